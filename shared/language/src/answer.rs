@@ -6,9 +6,8 @@ use crate::clauses::Clause;
 use crate::content::{Asserted, Content};
 use crate::lexicon::{Lexicon, Sense};
 use crate::question_words::QuestionWords;
-use crate::tagger::Tag;
+use crate::tagger::{Tag, after};
 use crate::token_class::{Class, classes};
-use crate::word_sets::WordSet;
 
 /// An answer to the question asked, or the lack of one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,6 +16,8 @@ pub(crate) enum Answer {
     No,
     /// "I do not know": takes back the earlier answers.
     Unsure,
+    /// "let me think": takes it back as well, and says nothing instead.
+    Pondering,
 }
 
 /// Answers in order, each with its tag; the scope of the question has none.
@@ -40,7 +41,7 @@ impl Answers {
         let doubt = match answer {
             Answer::Yes | Answer::No => tags[at].answer_doubt(),
             // That one does not know is no less sure for being said so.
-            Answer::Unsure => tags[at].doubt,
+            Answer::Unsure | Answer::Pondering => tags[at].doubt,
         };
         self.given.push(Given { answer, at: Some(at), doubt });
     }
@@ -56,6 +57,11 @@ impl Answers {
 
     pub(crate) fn is_empty(&self) -> bool {
         self.given.is_empty()
+    }
+
+    /// Returns whether the last answer was given by a tag before `at`.
+    fn are_before(&self, at: usize) -> bool {
+        self.given.last().is_some_and(|given| given.at.is_some_and(|given| given < at))
     }
 
     /// The valid answer: the last one, unless it is tied to its opposite ("yes and no"); and its
@@ -100,13 +106,15 @@ pub(crate) fn answer(tags: &[Tag<'_>], clause: &Clause, at: usize) -> Option<Ans
         Class::WeakNo if is_bare(tags, clause) => Some(Answer::No),
         Class::Likely if is_bare(tags, clause) => Some(Answer::Yes),
         Class::Other if is_other_one(tags, clause, at) => Some(Answer::No),
-        Class::Ordinal if WordSet::Next.has(tags[at].word) && is_other_one(tags, clause, at) => {
+        Class::Ordinal if tags[at].word == "next" && is_other_one(tags, clause, at) => {
             Some(Answer::No)
         }
         Class::PutBack => Some(Answer::No),
         Class::Be | Class::Auxiliary if is_affirmed(tags, clause, at) => Some(Answer::Yes),
-        // "the wrong spoon"
-        Class::WeakNo if WordSet::Wrong.has(tags[at].word) => Some(Answer::No),
+        Class::WeakYes if is_judged(tags, clause, at) => Some(Answer::Yes),
+        Class::WeakNo if is_judged(tags, clause, at) || is_wrong_thing(tags, at) => {
+            Some(Answer::No)
+        }
         _ => None,
     }
 }
@@ -131,6 +139,24 @@ fn is_other_one(tags: &[Tag<'_>], clause: &Clause, at: usize) -> bool {
     whole && plain && !before.is_some_and(|before| before.is_any(classes![Quantifier AskBack]))
 }
 
+/// "the wrong spoon", "wrong medicine": the thing after it is refused.
+pub(crate) fn is_wrong_thing(tags: &[Tag<'_>], at: usize) -> bool {
+    tags[at].word == "wrong"
+        && after(tags, at)
+            .is_some_and(|next| next.is_value() || next.is_any(classes![Head Attribute Unlisted]))
+}
+
+/// "drawer is right", "white would be wrong".
+fn is_judged(tags: &[Tag<'_>], clause: &Clause, at: usize) -> bool {
+    let before = &tags[clause.span.start..at];
+    let plain = |tag: &Tag<'_>| {
+        tag.is_value() || tag.is_any(classes![Determiner Head Filler Yes No Preposition])
+    };
+    matches!(before, [said @ .., be]
+        if be.is(Class::Be) && said.iter().all(plain) && said.iter().any(|tag| tag.is_value()))
+        && at + 1 == clause.span.end
+}
+
 /// Returns whether a sentence about the question says no more than yes.
 fn is_affirmed(tags: &[Tag<'_>], clause: &Clause, at: usize) -> bool {
     let before = &tags[clause.span.start..at];
@@ -150,18 +176,22 @@ fn is_affirmed(tags: &[Tag<'_>], clause: &Clause, at: usize) -> bool {
 
 /// "that's where it is", "that's what I've been looking for".
 fn is_what(said: &[Tag<'_>]) -> bool {
-    let [what, whose, ..] = said else { return false };
+    let [what, whose, rest @ ..] = said else { return false };
+    const STRANGE: &[Class] = classes![Not No Unsure Pondering Unlisted Third Other Ordinal];
     // "what is in it" is a phrase
-    let phrase = what.is(Class::AskBack) && WordSet::Which.has(what.word);
+    let phrase = what.is(Class::AskBack) && what.word == "what";
     (what.is(Class::Question) || phrase)
-        && (whose.is_any(classes![It First Possessive Be]) || WordSet::It.has(whose.word))
+        && (whose.is_any(classes![It First Possessive Be]) || whose.word == "it")
+        && rest.iter().all(|tag| !tag.is_value() && !tag.is_any(STRANGE))
+        && rest.iter().filter(|tag| tag.is_unknown()).count() <= 1
 }
 
 /// "it is made of that", "it does have that", "it's in there", "it is one".
 fn is_it(said: &[Tag<'_>]) -> bool {
     let Some((last, rest)) = said.split_last() else { return false };
+    let place = matches!(last.word, "in" | "there" | "here" | "up" | "down" | "over" | "right");
     let shown =
-        last.is_any(classes![Pointer It]) || last.is(Class::Plain) && WordSet::There.has(last.word);
+        last.is_any(classes![Pointer It]) || last.is(Class::Plain) && (place || last.word == "one");
     shown
         && rest
             .iter()
@@ -171,10 +201,14 @@ fn is_it(said: &[Tag<'_>]) -> bool {
 /// "that is exactly the one I want", "it's the one".
 fn is_the_one(tags: &[Tag<'_>], clause: &Clause, at: usize) -> bool {
     let said = &tags[at + 1..clause.span.end];
-    let plain = !tags[clause.span.clone()].iter().any(Tag::is_value);
-    let the_one = said
-        .windows(2)
-        .any(|pair| pair[0].is_any(classes![Determiner Possessive]) && pair[1].is(Class::Head));
+    let plain = tags[clause.span.clone()].iter().all(|tag| {
+        !tag.is_value()
+            && !tag.is_unknown()
+            && !tag.is_any(classes![Not Ordinal Unlisted Other Question])
+    });
+    let the_one = said.windows(2).any(|pair| {
+        (pair[0].word == "the" || pair[0].is(Class::Possessive)) && pair[1].is(Class::Head)
+    });
     plain && the_one
 }
 
@@ -208,7 +242,11 @@ pub(crate) fn response(
     match (answer, careless) {
         (Some((Answer::Yes, doubt)), _) => (Response::Yes, doubt),
         // "no, I don't mind" denies nothing.
-        (Some((Answer::No, _)), Some(careless)) if !described => careless,
+        (Some((Answer::No, _)), Some(careless))
+            if !described && indifferent.is_some_and(|at| content.answers.are_before(at)) =>
+        {
+            careless
+        }
         (Some((Answer::No, doubt)), _) => (Response::No, doubt),
         (None, _) if certain => match implied(&content.base, asked) {
             (Response::None, _) => careless.unwrap_or((Response::None, 0.0)),
@@ -216,7 +254,7 @@ pub(crate) fn response(
         },
         (_, Some(careless)) => careless,
         (Some((Answer::Unsure, doubt)), None) if !described => (Response::CannotTell, doubt),
-        (Some((Answer::Unsure, _)) | None, None) => (Response::None, 0.0),
+        (Some((Answer::Unsure | Answer::Pondering, _)) | None, None) => (Response::None, 0.0),
     }
 }
 

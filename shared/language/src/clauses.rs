@@ -28,6 +28,15 @@ pub(crate) struct Clause {
     pub(crate) requests: bool,
     /// Orders something else than to fetch.
     pub(crate) chore: bool,
+    /// Values of which nothing is said.
+    pub(crate) distractors: Vec<usize>,
+}
+
+impl Clause {
+    /// Returns whether the value at this tag describes the wanted object.
+    pub(crate) fn counts(&self, at: usize) -> bool {
+        self.topic == Topic::On && !self.distractors.contains(&at)
+    }
 }
 
 /// Longest clause that is judged as one, so that the work stays linear in the utterance.
@@ -40,7 +49,7 @@ pub(crate) fn clauses(tags: &[Tag<'_>], fates: &Fates, code: bool) -> Vec<Clause
     let mut start = 0;
     for at in 1..=tags.len() {
         if at == tags.len() || at - start == CLAUSE_MARKS_MAX || starts_clause(tags, at) {
-            clauses.push(classify(tags, fates, start..at, injected));
+            clauses.push(classify(tags, fates, start..at, clauses.last(), injected));
             start = at;
         }
     }

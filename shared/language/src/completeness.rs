@@ -9,7 +9,6 @@ use words::{Tokens, normalise};
 use crate::reader::Reader;
 use crate::tagger::{Tag, tag};
 use crate::token_class::{Class, classes};
-use crate::word_sets::WordSet;
 
 /// How complete an utterance is, the most complete first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -119,7 +118,7 @@ fn is_open(tags: &[Tag<'_>]) -> bool {
         return true;
     }
     let follows = |class| before.last().is_some_and(|tag| tag.is(class));
-    if WordSet::Person.has(last.word) && follows(Class::Fetch)
+    if last.word == "me" && follows(Class::Fetch)
         || last.is(Class::Second) && follows(Class::Auxiliary)
     {
         return true;
@@ -131,15 +130,17 @@ fn is_open(tags: &[Tag<'_>]) -> bool {
         return false;
     }
     let lead = before.iter().rev().find(|tag| !is_modifier(tag) && !tag.is(Class::Plain));
-    lead.is_some_and(|lead| lead.is_any(classes![Determiner Possessive Quantifier]))
+    let is_place = last.is(Class::Ordinal)
+        && before.iter().any(|tag| tag.is_any(classes![Preposition Destination]));
+    !is_place && lead.is_some_and(|lead| lead.is_any(classes![Determiner Possessive Quantifier]))
 }
 
 /// "It is", "no it has": an answer after a yes alone ("yes it is").
 fn begins_statement(words: &[&str], tags: &[Tag<'_>]) -> bool {
-    let [earlier @ .., it, is] = words else { return false };
-    if !WordSet::It.has(it) || !WordSet::Is.has(is) {
+    let [earlier @ .., "it" | "that" | "they" | "which", "is" | "has" | "was" | "are"] = words
+    else {
         return false;
-    }
+    };
     earlier.is_empty() || !tags.first().is_some_and(|first| first.is(Class::Yes))
 }
 

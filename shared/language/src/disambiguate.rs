@@ -6,7 +6,6 @@ use crate::lexicon::{Lexicon, Sense};
 use crate::synonyms::is_thing;
 use crate::tagger::{Tag, after, before, doubts};
 use crate::token_class::{Class, classes};
-use crate::word_sets::WordSet;
 
 /// Resolves the tags that depend on their neighbours.
 pub(crate) fn disambiguate<'a>(lexicon: &'a Lexicon, tags: &mut [Tag<'a>]) {
@@ -104,7 +103,8 @@ impl<'a> Place<'_, 'a> {
 
     /// "any bowl but the white one".
     fn is_exception(&self) -> bool {
-        self.recent(3).iter().any(|tag| WordSet::All.has(tag.word))
+        let any = |tag: &Tag<'_>| matches!(tag.word, "any" | "every" | "all" | "anyone");
+        self.recent(3).iter().any(any)
     }
 
     /// "so blue", where "so" joins nothing.
@@ -130,7 +130,7 @@ impl<'a> Place<'_, 'a> {
     fn is_pause_to_think(&self) -> bool {
         const REACH: usize = 4;
         let names = |tag: &Tag<'_>| tag.is_value() || tag.is_any(classes![Yes No]);
-        WordSet::Pause.has(self.tag().word)
+        matches!(self.tag().word, "hang" | "hold" | "one" | "just")
             && self.recent(REACH).iter().any(names)
             && self.tags[self.at + 1..].iter().take(REACH).any(names)
     }
@@ -212,7 +212,7 @@ impl<'a> Place<'_, 'a> {
     fn misheard_place(&self, lexicon: &'a Lexicon) -> Option<(Sense<'a>, f64)> {
         let [preposition, determiner] = self.recent(2) else { return None };
         let stands = preposition.is(Class::Preposition)
-            && WordSet::The.has(determiner.word)
+            && determiner.word == "the"
             && self.after().is_none_or(|tag| tag.is_any(classes![Courtesy Filler]));
         let (word, lookalikes) = (self.tag().word, lexicon.lookalikes());
         let value = lookalikes.looks_like(word).or_else(|| lookalikes.sounds_like(word))?;

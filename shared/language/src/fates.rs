@@ -67,9 +67,9 @@ impl Fates {
         self.0[at].unwrap_or(Polarity::Neither)
     }
 
-    /// Returns whether a tag is a value that is wanted or denied.
-    pub(crate) fn is_wish(&self, at: usize) -> bool {
-        self.of(at) != Polarity::Neither
+    /// Returns whether a tag is a value of which nothing is said.
+    pub(crate) fn is_neither(&self, at: usize) -> bool {
+        self.0[at] == Some(Polarity::Neither)
     }
 
     /// Returns whether there are values, and nothing is said of any.

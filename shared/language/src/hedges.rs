@@ -23,7 +23,6 @@ use crate::clauses::{Clause, Topic};
 use crate::lexicon::Sense;
 use crate::tagger::Tag;
 use crate::token_class::{Class, classes};
-use crate::word_sets::WordSet;
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
@@ -88,7 +87,7 @@ pub(crate) fn sureness(class: Class, phrase: &str) -> f64 {
 fn sureness_of(tag: &Tag<'_>) -> f64 {
     match tag.sense {
         Sense::Class(Class::Hedge | Class::Likely | Class::Unsure | Class::Pondering) => tag.sure,
-        Sense::Class(Class::Plain) if WordSet::Think.has(tag.word) => {
+        Sense::Class(Class::Plain) if matches!(tag.word, "think" | "believe") => {
             sureness(Class::Hedge, tag.word)
         }
         _ => 1.0,

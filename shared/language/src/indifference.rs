@@ -5,7 +5,6 @@ use crate::fates::{Fates, Polarity};
 use crate::question_words::QuestionWords;
 use crate::tagger::{Tag, after};
 use crate::token_class::{Class, classes};
-use crate::word_sets::WordSet;
 
 /// Returns the tag that says so.
 pub(crate) fn indifference(
@@ -18,10 +17,8 @@ pub(crate) fn indifference(
     let on_topic = clauses.iter().filter(|clause| clause.topic == Topic::On);
     on_topic.flat_map(|clause| clause.span.clone().map(move |at| (clause, at))).find_map(
         |(clause, at)| {
-            // "ducks I couldn't care less about" says so of them, unless it is an answer.
-            let is_of_it = |next: &Tag<'_>| next.is_any(classes![Join Preposition]);
-            let said = tags[at].is(Class::Indifferent)
-                && (answers || !after(tags, at).is_some_and(is_of_it));
+            // "I don't care what colour" is about the question, if there is one.
+            let said = tags[at].is(Class::Indifferent) && (answers || !wonders_after(tags, at));
             let is_any = is_any(&tags[clause.span.clone()], at - clause.span.start, answers);
             (said || is_any && !is_denied(tags, fates, at)).then_some(at)
         },
@@ -42,8 +39,8 @@ fn is_any(clause: &[Tag<'_>], at: usize, answers: bool) -> bool {
     const AFTER: &[Class] = classes![
         Be Auxiliary Courtesy Filler Except WeakYes Plain First Second Indifferent But
     ];
-    let free =
-        clause[at].is_any(classes![Quantifier Plain Head]) && WordSet::Any.has(clause[at].word);
+    let free = clause[at].is_any(classes![Quantifier Plain Head])
+        && matches!(clause[at].word, "any" | "either" | "whichever" | "whatever" | "anything");
     if !free || clause.iter().any(|tag| tag.is_any(OTHERWISE)) {
         return false;
     }
@@ -65,7 +62,21 @@ fn is_any(clause: &[Tag<'_>], at: usize, answers: bool) -> bool {
 /// Returns whether it is about the question ("it does not matter", "any colour"), and not of the
 /// object ("I do not care", "either").
 pub(crate) fn is_of_attribute(tags: &[Tag<'_>], at: usize) -> bool {
+    const WORDS: &[&str] =
+        &["matter", "difference", "important", "irrelevant", "immaterial", "odds"];
     let said = tags[at + 1..].iter().position(Tag::pauses).map_or(tags.len(), |end| at + 1 + end);
-    WordSet::Mattering.has(tags[at].last)
+    WORDS.contains(&tags[at].last)
         || tags[at..said].iter().any(|tag| tag.is(Class::Attribute) || tag.word == "be")
+}
+
+/// "I don't care what colour", "it doesn't have to be white".
+fn wonders_after(tags: &[Tag<'_>], at: usize) -> bool {
+    let open = matches!(tags[at].word, "does" | "do" | "need" | "it" | "i" | "at");
+    let ends = after(tags, at + 1).is_none_or(|tag| tag.is_any(classes![Courtesy Filler]));
+    after(tags, at).is_some_and(|next| {
+        // "I don't care which"
+        next.is_any(classes![Join Preposition])
+            || next.is(Class::Question) && !ends
+            || open && (next.is_value() || next.is(Class::Determiner))
+    })
 }

@@ -1,6 +1,6 @@
 //! The intent of an utterance.
 
-use scene::Intent;
+use scene::{Intent, Role};
 
 use crate::clauses::{Clause, Topic};
 use crate::content::Content;
@@ -9,7 +9,6 @@ use crate::question_words::QuestionWords;
 use crate::questions::fetches_it;
 use crate::tagger::Tag;
 use crate::token_class::{Class, classes};
-use crate::word_sets::WordSet;
 
 /// The intent of an utterance whose content is known.
 ///
@@ -40,11 +39,11 @@ pub(crate) fn intent(
         Intent::Repeat
     } else if says_nothing && clauses.iter().any(|clause| clause.topic == Topic::AskBack) {
         Intent::AskBack
-    } else if new && tags.iter().any(|tag| tag.is(Class::PutBack))
+    } else if new && clauses.iter().any(|clause| puts_it_back(tags, clause))
         || clauses.iter().any(|clause| puts_back(tags, clause))
     {
         Intent::PutBack
-    } else if clauses.iter().any(|clause| clause.chore) {
+    } else if is_chore(tags, clauses) {
         Intent::Chore
     } else if let Some(courtesy) =
         courtesy(tags).filter(|_| says_nothing && (new || content.answers.is_empty()))
@@ -76,11 +75,10 @@ pub(crate) fn commands(tags: &[Tag<'_>], clause: &Clause, class: Class) -> bool 
 fn declines(tags: &[Tag<'_>], clause: &Clause, new: bool) -> bool {
     let tags = &tags[clause.span.clone()];
     let denies = tags.iter().any(|tag| tag.is(Class::Not));
-    let fetches =
-        tags.iter().any(|tag| tag.is_any(classes![Fetch Want]) || WordSet::Forget.has(tag.word));
+    let fetches = tags.iter().any(|tag| tag.is_any(classes![Fetch Want]) || tag.word == "forget");
     let noun = tags
         .iter()
-        .any(|tag| tag.is(Class::Head) && !WordSet::One.has(tag.word) || new && tag.is(Class::It));
+        .any(|tag| tag.is(Class::Head) && !tag.word.starts_with("one") || new && tag.is(Class::It));
     let plain = tags.iter().all(|tag| {
         !tag.is_unknown()
             && !tag.is_any(classes![Pointer Other Unlisted Ordinal Attribute Preposition Landmark])
@@ -88,32 +86,75 @@ fn declines(tags: &[Tag<'_>], clause: &Clause, new: bool) -> bool {
     clause.topic == Topic::On && denies && fetches && noun && plain
 }
 
+/// "put it back", "put it back on the shelf".
+fn puts_it_back(tags: &[Tag<'_>], clause: &Clause) -> bool {
+    let described = |tag: &Tag<'_>| tag.is_value() && !tag.is_role(Role::Place);
+    tags[clause.span.clone()].iter().any(|tag| tag.is(Class::PutBack))
+        && !tags.iter().any(described)
+}
+
 /// "put the red mug back", "return the red mug to the shelf", "put the red mug away", but not "put
-/// the red mug on the shelf".
+/// it back on" and "bring the red mug back to me".
 fn puts_back(tags: &[Tag<'_>], clause: &Clause) -> bool {
     let [verb, rest @ ..] = order(&tags[clause.span.clone()]) else { return false };
     // "put back the red mug"
-    let is_back_first = rest.first().is_some_and(|tag| WordSet::Back.has(tag.word));
+    let is_back_first = rest.first().is_some_and(|tag| tag.word == "back");
     let rest = &rest[usize::from(is_back_first)..];
     let is_thing = |tag: &Tag<'_>| tag.is_value() || tag.is_any(classes![Pointer It Head]);
     let in_phrase = |tag: &&Tag<'_>| is_thing(tag) || tag.is_any(classes![Determiner Possessive]);
     let (thing, rest) = rest.split_at(rest.iter().take_while(in_phrase).count());
-    let leads_back = is_back_first || rest.first().is_some_and(|tag| WordSet::Back.has(tag.word));
-    let returns = verb.word == "return" || (verb.word, verb.last) == ("put", "away");
-    (returns || WordSet::Returning.has(verb.word) && leads_back) && thing.iter().any(is_thing)
+    let place = match (verb.word, verb.last, rest) {
+        ("put", "away", rest) => rest,
+        ("put" | "take" | "bring" | "return", _, [back, rest @ ..]) if back.word == "back" => rest,
+        ("put" | "take", _, [away, rest @ ..]) if away.word == "away" => rest,
+        ("return", _, rest) => rest,
+        ("put" | "take", _, rest) if is_back_first => rest,
+        _ => return false,
+    };
+    thing.iter().any(is_thing) && is_where_it_was(place)
+}
+
+/// Continuations of "put it back": nothing, "on the shelf", "where it was", "in its place".
+fn is_where_it_was(tags: &[Tag<'_>]) -> bool {
+    const BESIDE: &[Class] = classes![Courtesy Filler];
+    const IN_PLACE: &[Class] =
+        classes![Courtesy Filler Preposition Destination Determiner Possessive It Be];
+    // "in its place", where "its" is read as "it is".
+    let is_own_place = |tag: &Tag<'_>| matches!(tag.word, "place" | "spot");
+    let is_place =
+        |tag: &Tag<'_>| tag.is_role(Role::Place) || tag.is(Class::Unlisted) || is_own_place(tag);
+    // Our things go back to their places, whatever is said about those.
+    let says_where = tags.first().is_some_and(|tag| tag.word == "where");
+    let says_place = tags.iter().any(is_place)
+        && tags.iter().all(|tag| is_place(tag) || tag.is_any(IN_PLACE) && tag.word != "from");
+    says_where || says_place || tags.iter().all(|tag| tag.is_any(BESIDE))
 }
 
 /// An order from its verb on: "put it back" of "now I want you to put it back".
 fn order<'t, 'a>(tags: &'t [Tag<'a>]) -> &'t [Tag<'a>] {
     const LEADS: &[Class] = classes![WeakYes Repair Plain];
-    match after_leads(tags) {
-        [i, want, _, to, rest @ ..]
-            if i.is(Class::First) && want.is(Class::Want) && to.is(Class::Destination) =>
+    let tags = after_leads(tags);
+    match tags {
+        [i, want, you, to, rest @ ..]
+            if i.is(Class::First)
+                && want.is(Class::Want)
+                && you.is(Class::Second)
+                && to.is(Class::Destination) =>
         {
             rest
         }
-        tags => after_leads(&tags[tags.iter().take_while(|tag| tag.is_any(LEADS)).count()..]),
+        _ => after_leads(&tags[tags.iter().take_while(|tag| tag.is_any(LEADS)).count()..]),
     }
+}
+
+/// "wash the clear bowl", but not "wash it and bring it to me".
+fn is_chore(tags: &[Tag<'_>], clauses: &[Clause]) -> bool {
+    let fetches = |clause: &Clause| {
+        !clause.chore && tags[clause.span.clone()].iter().any(|tag| tag.is(Class::Fetch))
+    };
+    clauses.iter().any(|clause| clause.chore)
+        && !clauses.iter().any(fetches)
+        && !fetches_it(tags, clauses)
 }
 
 /// "the clear bowl is in the cabinet": no wish about any of our things that are named.
@@ -147,19 +188,40 @@ fn courtesy(tags: &[Tag<'_>]) -> Option<Intent> {
     ];
     const STRANGE_MAX: usize = 2;
     // "No, thanks", or "no thanks", which is one phrase.
-    let no = |tag: &Tag<'_>| tag.is(Class::No) && WordSet::No.has(tag.word);
-    let no_thanks = |tag: &Tag<'_>| no(tag) && WordSet::Thanked.has(tag.last);
+    let no = |tag: &Tag<'_>| tag.is(Class::No) && tag.word == "no";
+    let no_thanks = |tag: &Tag<'_>| no(tag) && matches!(tag.last, "thanks" | "you");
     let strange = tags.iter().filter(|tag| tag.is_unknown()).count();
     let beside = |tag: &Tag<'_>| tag.is_any(BESIDE) || tag.is_unknown() || no(tag);
-    let said = |set: WordSet| tags.iter().any(|tag| tag.is(Class::Courtesy) && set.has(tag.word));
+    let said = |words: &[&str]| {
+        tags.iter().any(|tag| tag.is(Class::Courtesy) && words.contains(&tag.word))
+    };
     if strange > STRANGE_MAX || !tags.iter().all(beside) {
         None
-    } else if said(WordSet::Thanks) || tags.iter().any(no_thanks) {
+    } else if said(&["thanks", "thank", "thx", "ty", "cheers", "many", "much", "ta"])
+        || said(&["i", "that"])
+        || tags.iter().any(no_thanks)
+    {
         Some(Intent::Thank)
-    } else if strange == 0 && said(WordSet::Farewell) {
+    } else if strange == 0 && said(&["goodbye", "bye", "see", "farewell"]) {
         Some(Intent::Leave)
+    } else if strange == 0
+        && said(&[
+            "hello",
+            "hi",
+            "hey",
+            "hiya",
+            "howdy",
+            "good",
+            "greetings",
+            "take",
+            "welcome",
+            "nice",
+            "how",
+        ])
+    {
+        Some(Intent::Greet)
     } else {
-        (strange == 0 && said(WordSet::Greeting)).then_some(Intent::Greet)
+        None
     }
 }
 
@@ -178,8 +240,8 @@ fn puts_off(tags: &[Tag<'_>]) -> bool {
 fn is_only_huh(tags: &[Tag<'_>]) -> bool {
     let huh = |tag: &Tag<'_>| {
         tag.is(Class::Huh)
-            || tag.is(Class::Question) && WordSet::What.has(tag.word)
-            || tag.is(Class::Repair) && WordSet::Pardon.has(tag.word)
+            || tag.is(Class::Question) && tag.word == "what"
+            || tag.is(Class::Repair) && matches!(tag.word, "sorry" | "pardon" | "excuse" | "i")
     };
     tags.iter().any(huh)
         && tags.iter().all(|tag| huh(tag) || tag.is_any(classes![Filler Courtesy It Be]))
@@ -201,9 +263,9 @@ fn informs(tags: &[Tag<'_>], clauses: &[Clause], content: &Content<'_>) -> bool 
 pub(crate) fn is_side_talk(tags: &[Tag<'_>], clauses: &[Clause]) -> bool {
     let plans = |clause: &Clause| {
         let tags = &tags[clause.span.clone()];
-        tags.first().is_some_and(|tag| WordSet::We.has(tag.word))
-            && tags.iter().any(|tag| tag.is_any(classes![Auxiliary Want]))
-            && tags.iter().any(|tag| tag.is(Class::When))
+        let speaker = tags.first().is_some_and(|tag| matches!(tag.word, "i" | "we"));
+        let will = |tag: &Tag<'_>| tag.word == "will" || tag.is(Class::Want);
+        speaker && tags.iter().any(will) && tags.iter().any(|tag| tag.is(Class::When))
     };
     let side_talk = tags.iter().any(|tag| tag.is(Class::SideTalk)) || clauses.iter().any(plans);
     side_talk && !clauses.iter().any(|clause| clause.requests)

@@ -15,7 +15,7 @@
 //! | tag | `tagger.rs` (`disambiguate.rs`, `lexicon.rs`, `lookalikes.rs`, `morphology.rs`, `relations.rs`, `spelling.rs`, `vocabulary/`) | value or class of each word or phrase |
 //! | judge | `features.rs`, `sequence.rs` (`word_groups.rs`), `judge.rs`, `recurrent.rs` (`vocabulary/judge.bin`), `mentions.rs` | how probable each value word is wanted, denied, neither |
 //! | fates | `fates.rs` | ways to read the values, each with its probability; the rest is done for each way |
-//! | clauses | `clauses.rs` (`topic.rs`, `asking_back.rs`), `hedges.rs` | the parts that are about the objects |
+//! | clauses | `clauses.rs` (`topic.rs`, `asking_back.rs`, `errands.rs`), `hedges.rs` | the parts that are about the objects |
 //! | content | `extractor.rs` (`content.rs`, `negation_scope.rs`, `negation.rs`) | values asserted, groups excluded, answers |
 //! | answer, intent | `answer.rs` (`indifference.rs`), `intent.rs` (`questions.rs`), `references.rs`, `objects.rs` | the response that counts, the user's intent, what is referred to, each object asked for |
 //! | readings | `parsed.rs`, `reader.rs` | alternative readings with weights and doubts |
@@ -23,9 +23,8 @@
 //! [`CompletenessJudge`] judges whether a speaker will continue after a pause. [`words::confusion`]
 //! gives the probabilities of mishearing one of a scene's words for another.
 //!
-//! Words that belong to a scene come from the scene (`lexicon/scene_words.rs`); the English of a
-//! dialogue is data in `vocabulary/`, the sets of words that rules look for included
-//! (`word_sets.rs`).
+//! Words that belong to a scene come from the scene; the English of a dialogue is data in
+//! `vocabulary/`.
 //!
 //! # Example
 //!
@@ -63,6 +62,7 @@ mod completeness;
 mod content;
 mod disambiguate;
 mod echo;
+mod errands;
 mod extractor;
 mod fates;
 mod features;
@@ -100,7 +100,6 @@ mod topic;
 mod unknown;
 mod vocabulary;
 mod word_groups;
-mod word_sets;
 
 #[cfg(test)]
 mod tests;

@@ -9,8 +9,10 @@ use crate::lexicon::ValueSense;
 #[derive(Debug)]
 pub(crate) struct NegationScope<'a> {
     groups: Vec<Group<'a>>,
-    /// A preposition or an "or" has just been heard: the next noun phrase belongs to it.
+    /// A preposition or conjunction has just been heard: the next noun phrase belongs to it.
     joined: bool,
+    /// An "and" has been heard inside the current group.
+    coordinated: bool,
     /// Probability that the negation was not said.
     doubt: f64,
 }
@@ -39,7 +41,7 @@ impl<'a> NegationScope<'a> {
     /// A negation that was said but for this doubt.
     pub(crate) fn new(doubt: f64) -> Self {
         let groups = vec![Group::default()];
-        Self { groups, joined: false, doubt }
+        Self { groups, joined: false, coordinated: false, doubt }
     }
 
     /// Returns whether the current noun phrase is complete, so that another follows.
@@ -63,7 +65,7 @@ impl<'a> NegationScope<'a> {
         }
         if let Some(at) = self.last().values.iter().position(|other| other.rivals(value)) {
             // "not white clear": nothing is both, so the second is wanted instead.
-            if !self.joined {
+            if !self.coordinated && !self.joined {
                 return false;
             }
             let mut values = self.last().values.clone();
@@ -92,7 +94,12 @@ impl<'a> NegationScope<'a> {
         self.joined = false;
     }
 
-    /// "in": the following words describe the same thing.
+    /// A determiner: `false` if it starts a noun phrase beyond the scope.
+    pub(crate) fn determiner(&mut self) -> bool {
+        self.joined || self.last().is_open()
+    }
+
+    /// "in", "that is": the following words describe the same thing.
     pub(crate) fn join(&mut self) {
         self.joined = true;
     }
@@ -103,6 +110,15 @@ impl<'a> NegationScope<'a> {
             self.groups.push(Group::default());
         }
         self.joined = true;
+    }
+
+    /// "and" before a noun phrase or value: another group after a noun, more of the same before.
+    pub(crate) fn and(&mut self) {
+        if self.last().headed {
+            self.groups.push(Group::default());
+        }
+        self.joined = true;
+        self.coordinated = true;
     }
 
     /// The groups that were ruled out.

@@ -7,7 +7,6 @@ use crate::content::{Asserted, Content};
 use crate::question_words::QuestionWords;
 use crate::tagger::Tag;
 use crate::token_class::{Class, classes};
-use crate::word_sets::WordSet;
 
 /// Head of a noun phrase.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,7 +65,7 @@ fn parts<'a>(tags: &[Tag<'a>], base: &[Asserted<'a>], list: bool) -> Vec<Part<'a
     for (n, value) in base.iter().enumerate() {
         let from = n.checked_sub(1).map_or(0, |before| base[before].at + 1);
         let (joint, lead) = joint(tags, from, value.at);
-        let determined = lead < value.at;
+        let determined = tags[lead..value.at].iter().any(is_determiner);
         let splits = joint == Joint::And || joint == Joint::Comma && list && determined;
         if n == 0 || splits {
             if let Some(part) = parts.last_mut() {
@@ -94,11 +93,11 @@ fn joint(tags: &[Tag<'_>], from: usize, to: usize) -> (Joint, usize) {
         And Determiner Quantifier Possessive Head Fetch Want First Second Auxiliary Courtesy Filler
         Plain Other Preposition Destination
     ];
-    let is_and =
-        |tag: &Tag<'_>| tag.is(Class::And) || tag.is(Class::Join) && WordSet::Then.has(tag.last);
+    let is_and = |tag: &Tag<'_>| tag.is(Class::And) || tag.is(Class::Join) && tag.last == "then";
     let between = &tags[from..to];
     if !between.iter().all(|tag| tag.is_any(BETWEEN) || is_and(tag)) {
-        return (Joint::None, from);
+        let ends = |tag: &Tag<'_>| !is_determiner(tag);
+        return (Joint::None, from + between.iter().rposition(ends).map_or(0, |at| at + 1));
     }
     if let Some(at) = between.iter().rposition(is_and) {
         return (Joint::And, from + at + 1);
@@ -109,15 +108,23 @@ fn joint(tags: &[Tag<'_>], from: usize, to: usize) -> (Joint, usize) {
     }
 }
 
+fn is_determiner(tag: &Tag<'_>) -> bool {
+    tag.is_any(classes![Determiner Quantifier Possessive Other])
+}
+
 fn noun(phrase: &[Tag<'_>]) -> Noun {
-    if phrase.iter().any(|tag| tag.is_role(Role::Kind)) {
+    if phrase.iter().any(|tag| is_kind_tag(tag)) {
         return Noun::Named;
     }
     match phrase.iter().find(|tag| tag.is(Class::Head)) {
-        Some(head) if WordSet::One.has(head.word) => Noun::One,
+        Some(head) if head.word.starts_with("one") => Noun::One,
         Some(_) => Noun::Named,
         None => Noun::None,
     }
+}
+
+fn is_kind_tag(tag: &Tag<'_>) -> bool {
+    tag.is_role(Role::Kind)
 }
 
 /// Puts the parts of one object together again. `answers`: in answer to a question, where "white

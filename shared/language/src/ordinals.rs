@@ -3,14 +3,18 @@
 use scene::WordId;
 
 use crate::lexicon::{Lexicon, Sense};
-use crate::relation_words::ORDINALS;
-use crate::tagger::Tag;
+use crate::relation_words::ordinal;
+use crate::tagger::{Tag, after};
 use crate::token_class::Class;
 
 /// Replaces ordinals by the options that they denote.
 pub(crate) fn name_options<'a>(tags: &mut [Tag<'a>], options: &[WordId], lexicon: &'a Lexicon) {
-    for tag in tags {
+    for at in 0..tags.len() {
+        // "the top shelf" is a place of its own.
+        let is_part = after(tags, at).is_some_and(Tag::is_value);
+        let tag = &mut tags[at];
         if tag.is(Class::Ordinal)
+            && !is_part
             && let Some(option) = place(tag, options.len()).and_then(|place| options.get(place))
             && let Some(value) = lexicon.value_of(*option)
         {
@@ -24,7 +28,7 @@ fn place(tag: &Tag<'_>, count: usize) -> Option<usize> {
     match (tag.word, tag.last) {
         ("former", _) => Some(0),
         ("last" | "final" | "latter", _) => count.checked_sub(1),
-        ("number", last) => from_0(ORDINALS.of(&format!("number {last}"))),
-        (word, _) => from_0(ORDINALS.of(word)),
+        ("number", last) => from_0(ordinal(&format!("number {last}"))),
+        (word, _) => from_0(ordinal(word)),
     }
 }

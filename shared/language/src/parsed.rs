@@ -9,20 +9,11 @@ use crate::objects::objects;
 use crate::question_words::{QuestionWords, SceneQuestions};
 use crate::tagger::Tag;
 use crate::token_class::{Class, classes};
-use crate::word_sets::WordSet;
 
 /// Most readings of one utterance.
 pub const READINGS_MAX: usize = 4;
 /// Most further objects that "all" means, and most values in a question.
 const MORE_MAX: usize = 4;
-/// Numbers of further objects that words count; 0: as many as there are.
-const COUNTS: [(usize, &[&str]); 5] = [
-    (0, &["all"]),
-    (1, &["pair", "both", "two", "couple"]),
-    (2, &["three"]),
-    (3, &["four"]),
-    (MORE_MAX, &["five", "six", "seven", "eight", "nine", "ten"]),
-];
 /// Weight as a yes of a "maybe" that is not an answer, judged. That yes is doubted as well, so that
 /// it moves the odds little.
 const MAYBE_WEIGHT: f64 = 0.4;
@@ -93,22 +84,24 @@ impl ParsedUtterance<'_> {
         let count = count.map(|at| &self.tags[at]);
         let last = &self.tags[last..];
         let of_them = last.windows(3).find(|three| {
-            three[0].is(Class::Quantifier)
-                && WordSet::Of.has(three[1].word)
-                && three[2].is(Class::It)
+            three[0].is(Class::Quantifier) && three[1].word == "of" && three[2].is(Class::It)
         });
         let count = count.or(of_them.map(|three| &three[0]))?;
-        let is_plural = |it: &Asserted<'_>| self.questions.is_plural(it.word);
-        match COUNTS.iter().find(|(_, words)| words.contains(&count.word))?.0 {
+        match count.word {
             // "a pair of scissors" is one thing.
-            1 if WordSet::Pair.has(count.word) && self.content.base.iter().any(is_plural) => None,
-            0 => {
+            "pair" => {
+                (!self.content.base.iter().any(|it| self.questions.is_plural(it.word))).then_some(1)
+            }
+            "both" | "two" | "couple" => Some(1),
+            "three" => Some(2),
+            "four" => Some(3),
+            "five" | "six" | "seven" | "eight" | "nine" | "ten" => Some(MORE_MAX),
+            "all" if is_led || of_them.is_some() => {
                 let words: Vec<WordId> = self.content.base.iter().map(|it| it.word).collect();
                 let more = self.questions.suited(&words, &[]).saturating_sub(1);
-                let is_all = is_led || of_them.is_some();
-                (is_all && (1..=MORE_MAX).contains(&more)).then_some(more)
+                (1..=MORE_MAX).contains(&more).then_some(more)
             }
-            more => Some(more),
+            _ => None,
         }
     }
 
@@ -117,7 +110,7 @@ impl ParsedUtterance<'_> {
         let lead = |tag: &&Tag<'_>| tag.is_any(classes![Determiner Pointer Possessive]);
         let leads = self.tags[..at].iter().rev().take_while(lead).count();
         let [.., one, of] = &self.tags[..at - leads] else { return false };
-        WordSet::Of.has(of.word) && WordSet::OneOf.has(one.last)
+        of.word == "of" && matches!(one.last, "one" | "either" | "any")
     }
 
     /// Positions of the first and last word that describe the wanted object, or else of its noun.
@@ -125,7 +118,7 @@ impl ParsedUtterance<'_> {
         if let [first, ..] = &self.content.base[..] {
             return Some((first.at, self.content.base.last()?.at));
         }
-        let is_noun = |tag: &Tag<'_>| tag.is(Class::Head) && !WordSet::One.has(tag.word);
+        let is_noun = |tag: &Tag<'_>| tag.is(Class::Head) && !tag.word.starts_with("one");
         let mut requests = self.clauses.iter().filter(|clause| clause.requests);
         let noun = requests.find_map(|it| it.span.clone().find(|at| is_noun(&self.tags[*at])))?;
         Some((noun, noun))
@@ -215,6 +208,7 @@ impl ParsedUtterance<'_> {
         );
         asked
             && *best == Reading { intent: Intent::Inform, ..Reading::default() }
+            && self.content.answers.is_empty()
             && self.tags.iter().any(|tag| tag.is(Class::Hedge))
     }
 }

@@ -10,7 +10,6 @@ use crate::lexicon::{Lexicon, Sense};
 use crate::question_words::{QuestionWords, SceneQuestions};
 use crate::tagger::Tag;
 use crate::token_class::{Class, classes};
-use crate::word_sets::WordSet;
 
 /// Returns the subject of a text whose intent is a question, and the words for the objects asked
 /// about: "how many white cups are there".
@@ -29,6 +28,7 @@ pub(crate) fn question<'a>(
     let asked = first.and_then(|it| asked_values(&tags[it.span.clone()], lexicon, scene));
     // To `kind`, "how long is the wrench" asks whether there is one.
     if let Some(values) = asked
+        && matches!(intent, Intent::AskBack | Intent::AskWhether)
         && !content.base.is_empty()
     {
         content.asked = values.to_vec();
@@ -90,27 +90,29 @@ pub(crate) fn fetches_it(tags: &[Tag<'_>], clauses: &[Clause]) -> bool {
 /// Returns the clause as part of a question: nothing in it describes another thing.
 fn of_question(clause: &Clause) -> Clause {
     let topic = if clause.topic == Topic::AskBack { Topic::On } else { Topic::Off };
-    Clause { topic, ..clause.clone() }
+    Clause { topic, distractors: Vec::new(), ..clause.clone() }
 }
 
 /// The intent of a question; `describes`: it names objects of the scene.
 fn kind(tags: &[Tag<'_>], describes: bool) -> Intent {
     let says = |class| tags.iter().any(|tag| tag.is(class));
-    let opens = |set: WordSet| tags.iter().any(|tag| set.has(tag.word));
-    let ends = |set: WordSet| tags.iter().any(|tag| set.has(tag.last));
+    let opens = |word: &str| tags.iter().any(|tag| is_asking(tag) && tag.word == word);
+    let ends = |words: &[&str]| tags.iter().any(|tag| is_asking(tag) && words.contains(&tag.last));
     if says(Class::AskStatus) {
         Intent::AskStatus
     } else if says(Class::AskHelp) {
         Intent::AskHelp
-    } else if opens(WordSet::Why) || ends(WordSet::Come) {
+    } else if opens("why") || ends(&["come"]) {
         Intent::AskWhy
-    } else if says(Class::Attribute) {
+    } else if says(Class::Attribute)
+        || ends(&["mean", "pointing", "talking", "referring", "asking"])
+    {
         Intent::AskBack
-    } else if ends(WordSet::Many) || is_number_asked(tags) {
+    } else if ends(&["many"]) || is_number_asked(tags) {
         Intent::AskCount
-    } else if opens(WordSet::Where) || ends(WordSet::Where) {
+    } else if opens("where") || ends(&["where"]) {
         Intent::AskWhere
-    } else if describes && opens(WordSet::Which) {
+    } else if describes && (opens("what") || opens("which")) {
         Intent::AskWhich
     } else if describes {
         Intent::AskWhether
@@ -123,4 +125,8 @@ fn kind(tags: &[Tag<'_>], describes: bool) -> Intent {
 fn is_number_asked(tags: &[Tag<'_>]) -> bool {
     let is_number = |tag: &Tag<'_>| tag.is_any(classes![Quantifier One]);
     tags.windows(3).any(|it| is_number(&it[0]) && it[1].is(Class::Or) && is_number(&it[2]))
+}
+
+fn is_asking(tag: &Tag<'_>) -> bool {
+    tag.is(Class::AskBack) || tag.is(Class::Question)
 }

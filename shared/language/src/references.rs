@@ -9,7 +9,6 @@ use crate::question_words::QuestionWords;
 use crate::related::Related;
 use crate::tagger::{Tag, after, before};
 use crate::token_class::{Class, classes};
-use crate::word_sets::WordSet;
 
 /// Returns the last reference of an utterance, and the words of each object that it is to; a
 /// relation is preferred to the others.
@@ -27,12 +26,11 @@ pub(crate) fn reference(
 
 fn spoken_of(tags: &[Tag<'_>], clauses: &[Clause], asked: QuestionWords<'_>) -> Reference {
     // "again!"
-    let is_again = |tag: &Tag<'_>| WordSet::Again.has(tag.word);
-    let bare = |tag: &Tag<'_>| is_again(tag) || tag.is_any(classes![Filler Courtesy]);
-    if asked.is_nothing() && tags.iter().any(is_again) && tags.iter().all(bare) {
+    let bare = |tag: &Tag<'_>| tag.word == "again" || tag.is_any(classes![Filler Courtesy]);
+    if asked.is_nothing() && tags.iter().any(|tag| tag.word == "again") && tags.iter().all(bare) {
         return Reference::Same;
     }
-    let again = tags.iter().any(|tag| tag.is_any(classes![Huh Repeat]) && is_again(tag));
+    let again = tags.iter().any(|tag| tag.is_any(classes![Huh Repeat]) && tag.word == "again");
     let new = asked.is_nothing() || again;
     let spoken = clauses.iter().filter(|clause| clause.topic != Topic::Off);
     let all = spoken.flat_map(|clause| clause.span.clone()).map(|at| refers(tags, at, new));
@@ -51,16 +49,10 @@ fn refers(tags: &[Tag<'_>], at: usize, new: bool) -> Reference {
         return Reference::None;
     }
     match tag.word {
-        word if WordSet::Another.has(word) && is_another(tags, at) => Reference::Other,
+        "other" | "different" | "another" | "next" if is_another(tags, at) => Reference::Other,
         // "try another one", "a different one", "some other one"
-        word if WordSet::Some.has(word) && tag.is(Class::No) => Reference::Other,
-        word if WordSet::Same.has(word)
-            && tag.is_any(classes![Plain Yes])
-            && new
-            && is_whole(tags, at) =>
-        {
-            Reference::Same
-        }
+        "a" | "some" | "try" | "next" if tag.is(Class::No) => Reference::Other,
+        "same" if tag.is_any(classes![Plain Yes]) && new && is_whole(tags, at) => Reference::Same,
         _ => Reference::None,
     }
 }

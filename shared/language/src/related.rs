@@ -8,9 +8,7 @@ use words::Tokens;
 
 use crate::clauses::{Clause, Topic};
 use crate::negation::is_denied;
-use crate::relation_words::{
-    FIRSTS, OF_OBJECT, ORDINALS, PERSONS, QUALITIES, TO, by_quality, side,
-};
+use crate::relation_words::{by_quality, first, ordinal, quality, relation_to, side};
 use crate::tagger::{Tag, after, before};
 use crate::token_class::{Class, classes};
 
@@ -67,8 +65,7 @@ pub(crate) fn related(
 pub(crate) fn too_much(tags: &[Tag<'_>], at: usize) -> Option<Relation> {
     let is_too = before(tags, at).is_some_and(|before| before.last == "too");
     let is_noun = after(tags, at).is_some_and(|next| next.is(Class::Head) || next.is_value());
-    let measure =
-        QUALITIES.of(tags[at].word).filter(|it| it.is_of_object() && is_too && !is_noun)?;
+    let measure = quality(tags[at].word).filter(|it| it.is_of_object() && is_too && !is_noun)?;
     Some(Relation::More(measure.reverse()))
 }
 
@@ -93,10 +90,10 @@ impl Said<'_, '_> {
             return self.alone(relation, at..at + 1);
         }
         let (phrase, is_word) = (self.phrase(at), self.is_word(at));
-        if let Some(relation) = TO.of(&phrase) {
+        if let Some(relation) = relation_to(&phrase) {
             return self.to_another(relation, at);
         }
-        if let Some(n) = ORDINALS.of(&phrase) {
+        if let Some(n) = ordinal(&phrase) {
             return self.in_order(n, at);
         }
         if phrase == "last" {
@@ -138,7 +135,12 @@ impl Said<'_, '_> {
 
     /// "next to the cup", "nearest to me".
     fn to_another(&self, relation: Relation, at: usize) -> Option<Related> {
-        let near = after(self.tags, at).and_then(|next| PERSONS.of(next.word));
+        let person = after(self.tags, at).map(|next| next.word);
+        let near = match person {
+            Some("you") => Some(Measure::Near),
+            Some("me" | "us") => Some(Measure::NearUser),
+            _ => None,
+        };
         // "close to me" is vague, and "put it next to me" gives a destination.
         let is_where = self.tags[at].word.ends_with("est");
         match near {
@@ -159,13 +161,16 @@ impl Said<'_, '_> {
         let (mut to, mut group, mut at) = (Vec::new(), Vec::new(), from);
         while at < self.tags.len().min(from + 2 * PHRASE_MAX) {
             let tag = &self.tags[at];
+            let follows = at > from && tag.pauses();
             match tag.value() {
+                _ if follows => break,
                 Some(value) => group.push(value.word),
                 None if tag.is(Class::And) && !group.is_empty() && to.is_empty() => {
                     to.push(std::mem::take(&mut group));
                 }
                 None if tag.is_any(PHRASE) => {}
                 None if tag.is(Class::It) && at == from => return Some((to, at + 1)),
+                None if tag.is_unknown() || tag.is(Class::Unlisted) => return None,
                 None => break,
             }
             at += 1;
@@ -229,7 +234,7 @@ impl Said<'_, '_> {
 
     /// "leftmost", "furthest to the right", "the left one", "the middle one".
     fn word(&self, word: &str, at: usize) -> Option<Related> {
-        if let Some(measure) = FIRSTS.of(word) {
+        if let Some(measure) = first(word) {
             let side_next = self.tags.get(at + 1).and_then(|_| side(&self.phrase(at + 1)));
             return match side_next.filter(|_| measure == Measure::Far) {
                 Some(side) => self.alone(Relation::Nth(side, 1), at..at + 2),
@@ -242,8 +247,12 @@ impl Said<'_, '_> {
                 None => None,
             };
         }
-        let relation = OF_OBJECT.of(word).filter(|_| self.is_of_object(at))?;
-        self.alone(relation, at..at + 1)
+        let relation = match word {
+            "left" => Relation::Nth(Measure::Left, 1),
+            "middle" | "center" | "centre" => Relation::Middle(Measure::Left),
+            _ => return None,
+        };
+        if self.is_of_object(at) { self.alone(relation, at..at + 1) } else { None }
     }
 
     /// "the left bowl", "the middle", but not "the left shelf".

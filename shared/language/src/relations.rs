@@ -24,6 +24,9 @@ const PREPOSITIONS: &[&str] =
 /// Articles and possessives that may precede a noun, including none.
 const ARTICLES: &[&str] = &["the", "a", "an", "my", "your", "our", "this", "that"];
 
+/// Relations after which a part is named.
+const HAVING: [&str; 8] = ["with", "without", "of", "for", "made", "full", "filled", "containing"];
+
 /// Every relation of a place.
 fn relations() -> impl Iterator<Item = &'static str> {
     ALIKE.into_iter().flat_map(|alike| alike.split(", "))
@@ -57,7 +60,7 @@ pub(crate) fn forms<'a>(value: &'a Value, common: impl Iterator<Item = &'a str>)
     };
     let mut forms = Vec::new();
     if is_listed(&spoken) {
-        // "on the left tray" is no order in a row.
+        // "at the door" means something else in other scenes.
         forms.push(Form { words: spoken, own: true });
     }
     let is_like = |alike: &&str| alike.split(", ").any(|other| other == relation);
@@ -77,6 +80,11 @@ pub(crate) fn forms<'a>(value: &'a Value, common: impl Iterator<Item = &'a str>)
         }
     }
     forms
+}
+
+/// Returns whether a phrase for a place or a part beginning with this word names the relation.
+pub(crate) fn begins_relation(word: &str) -> bool {
+    HAVING.contains(&word) || relations().any(|relation| relation.split(' ').next() == Some(word))
 }
 
 /// Returns whether the words begin with a phrase of the language.

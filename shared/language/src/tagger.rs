@@ -9,6 +9,7 @@ use crate::disambiguate::disambiguate;
 use crate::halting::halting_words;
 use crate::lexicon::{Lexicon, Sense, ValueSense};
 use crate::question_words::QuestionWords;
+use crate::relations::begins_relation;
 use crate::spelling::shortened;
 use crate::token_class::{Class, classes};
 
@@ -118,6 +119,13 @@ impl<'a> Tag<'a> {
     /// Returns whether it is a value of this role.
     pub(crate) fn is_role(&self, role: Role) -> bool {
         self.value().is_some_and(|value| value.role == role)
+    }
+
+    /// Returns whether it is a place or a part with its relation: "next to the sink", "with nuts".
+    pub(crate) fn is_located(&self) -> bool {
+        (self.is_role(Role::Place) || self.is_role(Role::Part))
+            && self.word != self.last
+            && begins_relation(self.word)
     }
 
     /// Returns whether it is the noun of a thing.

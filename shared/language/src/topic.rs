@@ -4,15 +4,19 @@ use std::ops::Range;
 
 use scene::Role;
 
+use crate::answer::is_wrong_thing;
 use crate::clauses::{Clause, Topic};
 use crate::fates::Fates;
+use crate::related::too_much;
 use crate::tagger::Tag;
 use crate::token_class::{Class, classes};
-use crate::word_sets::WordSet;
 
-/// A clause and the evidence in its words.
+/// A clause, the evidence in its words, and the clause before it.
 pub(crate) struct ClauseAnalysis<'a> {
     pub(crate) clause: &'a [Tag<'a>],
+    /// Whether the clause is all that was said.
+    pub(crate) is_everything: bool,
+    pub(crate) previous_tags: &'a [Tag<'a>],
     /// Number of unknown words.
     pub(crate) unknown: usize,
     /// Number of values.
@@ -21,8 +25,6 @@ pub(crate) struct ClauseAnalysis<'a> {
 
 /// Classes of words that name the scene's objects.
 pub(crate) const SCENE_NAMES: &[Class] = classes![Head Attribute];
-/// Classes of words that a noun follows.
-pub(crate) const ARTICLES: &[Class] = classes![Determiner Quantifier Possessive];
 
 /// Returns the clause in a range of the tags, with its topic. `injected`: the text is addressed to
 /// a machine.
@@ -30,19 +32,23 @@ pub(crate) fn classify(
     tags: &[Tag<'_>],
     fates: &Fates,
     span: Range<usize>,
+    previous: Option<&Clause>,
     injected: bool,
 ) -> Clause {
     let clause = &tags[span.clone()];
     let analysis = ClauseAnalysis {
         clause,
+        is_everything: clause.len() == tags.len(),
+        previous_tags: previous.map_or(&[], |previous| &tags[previous.span.clone()]),
         unknown: clause.iter().filter(|tag| tag.is_unknown()).count(),
         values: clause.iter().filter(|tag| tag.is_value()).count(),
     };
-    let wishes = span.clone().any(|at| fates.is_wish(at));
+    let distractors: Vec<usize> = span.clone().filter(|at| fates.is_neither(*at)).collect();
+    let wishes = distractors.len() < analysis.values;
     let topic = analysis.topic(injected, wishes);
     let requests = topic == Topic::On && analysis.requests();
     let chore = !injected && analysis.is_chore();
-    Clause { span, topic, requests, chore }
+    Clause { span, topic, requests, chore, distractors }
 }
 
 impl<'a> ClauseAnalysis<'a> {
@@ -64,98 +70,192 @@ impl<'a> ClauseAnalysis<'a> {
     /// `wishes`: a value of it is wanted or denied.
     fn topic(&self, injected: bool, wishes: bool) -> Topic {
         if injected && !self.is_plain_request() || self.is_other_language() {
-            Topic::Off
-        } else if wishes {
-            Topic::On
-        } else if self.has(classes![SideTalk]) || self.is_about_others() {
-            Topic::Off
-        } else if self.asks_about_robot() {
-            Topic::AskBack
-        } else if self.asks_back() {
-            if self.asks_about_something_else() { Topic::Off } else { Topic::AskBack }
-        } else {
-            Topic::On
+            return Topic::Off;
         }
+        if wishes {
+            return Topic::On;
+        }
+        if self.is_unrelated_errand() || self.has(classes![SideTalk]) || self.is_story() {
+            return Topic::Off;
+        }
+        if self.asks_about_robot() {
+            return Topic::AskBack;
+        }
+        if self.asks_back() {
+            return if self.asks_about_something_else() { Topic::Off } else { Topic::AskBack };
+        }
+        if self.describes_something_else() || self.is_strange() { Topic::Off } else { Topic::On }
     }
 
     /// "get me the white one": a person requests a thing, whatever else the text says.
     fn is_plain_request(&self) -> bool {
-        self.clause.iter().any(|tag| WordSet::Speaker.has(tag.word))
+        self.clause.iter().any(|tag| matches!(tag.word, "me" | "i"))
             && self.values > 0
+            && self.has(classes![Fetch Want])
             && !self.has(classes![Injection])
     }
 
     fn is_other_language(&self) -> bool {
+        // Articles that are slips of an English finger elsewhere.
+        let article = |tag: &&Tag<'_>| matches!(tag.word, "de" | "da" | "te");
         let foreign = self.clause.iter().filter(|tag| tag.is(Class::OtherLanguage)).count();
+        let articles = self.clause.iter().filter(article).count();
         // "die weisse cup bitte": the objects present were meant.
         let ours = self.clause.iter().any(|tag| tag.is_value() && tag.exact);
-        !ours && foreign > 0 && 2 * (foreign + self.unknown) >= self.clause.len()
+        !ours && foreign > 0 && 2 * (foreign + articles + self.unknown) >= self.clause.len()
     }
 
-    /// "he said yes".
-    fn is_about_others(&self) -> bool {
-        // "he small white bowl" is a "the" that was not heard well.
-        let of_others =
-            |(at, opening)| opening == Class::Third && !self.next(at).is_some_and(Tag::is_value);
-        self.opening().is_some_and(of_others) && !self.has(classes![Fetch Want It])
+    /// "I had a big breakfast", "my shirt is white", "he said yes".
+    fn is_story(&self) -> bool {
+        let Some((at, opening)) = self.opening() else { return false };
+        if self.has(classes![Fetch Want]) {
+            return false;
+        }
+        let about_it = self.has(classes![It]) || self.has_the_one() || self.confirms();
+        let is_story = self.has(classes![Story]) && !about_it;
+        match opening {
+            Class::Story | Class::When => !about_it,
+            // "shall we go out for coffee"
+            Class::Auxiliary => {
+                matches!(self.clause[at].word, "shall" | "should")
+                    && self.next(at).is_some_and(|next| next.is(Class::First))
+            }
+            Class::First => is_story || self.has(classes![When]) && !about_it,
+            // "he small white bowl" is a "the" that was not heard well.
+            Class::Third => !about_it && !self.next(at).is_some_and(Tag::is_value),
+            // "my bowl is the white one" is about the bowl.
+            Class::Possessive => {
+                is_story || self.unknown > 0 && !about_it && !self.owns_ours(at + 1)
+            }
+            _ => false,
+        }
     }
 
-    /// Returns whether the clause names something to fetch.
-    fn requests(&self) -> bool {
-        let named = self.has(classes![Head Attribute Unlisted Ordinal Other Pointer]);
-        self.has(classes![Head Attribute Unlisted])
-            || self.has(classes![Fetch Want]) && named
-            || self.has(classes![Ordinal Other]) && self.unknown == 0
-            || self.clause.windows(2).any(|pair| {
-                // "get me …", "penicillin please"
-                pair[0].is(Class::Fetch) && WordSet::Me.has(pair[1].word)
-                    || pair[0].is_unknown()
-                        && WordSet::Please.has(pair[1].word)
-                        && self.clause.len() == 2
-            })
-            || self.clause.windows(3).any(|three| {
-                // "I would like a newspaper", "can I have the dinosaur"
-                three[0].is(Class::Want) && three[1].is_any(ARTICLES) && three[2].is_unknown()
-            })
+    /// Returns whether the clause is about "one" or "ones".
+    fn has_the_one(&self) -> bool {
+        self.clause.iter().any(|tag| tag.is(Class::Head) && tag.word.starts_with("one"))
+    }
+
+    /// "that's the one" and the like, whatever story follows.
+    fn confirms(&self) -> bool {
+        let shown = |tag: &Tag<'_>| matches!(tag.word, "that" | "this" | "it");
+        self.clause.iter().any(|tag| tag.is_any(classes![Yes WeakYes No]) && shown(tag))
+    }
+
+    /// "my bowl", "my silk shirt": the word here, or the phrase's last noun, names one of ours.
+    fn owns_ours(&self, at: usize) -> bool {
+        let Some(owned) = self.clause.get(at) else { return false };
+        let phrase = self.clause[at..].iter().enumerate().take_while(|(n, tag)| {
+            (*n == 0 || !tag.pauses()) && (tag.is_unknown() || tag.is_value())
+        });
+        owned.is_any(SCENE_NAMES)
+            || owned.is_value()
+            || phrase.last().is_some_and(|(_, noun)| noun.is_role(Role::Kind))
+    }
+
+    /// "my glass is empty": a thing of the kind, but not one of ours.
+    fn owns_unlisted(&self) -> bool {
+        let mut pairs = self.clause.windows(2);
+        pairs.any(|pair| pair[0].is(Class::Possessive) && pair[1].is(Class::Unlisted))
+    }
+
+    /// "my shirt is white": it says nothing about our things, and requests nothing.
+    fn describes_something_else(&self) -> bool {
+        // "wrong spoon", "too big"
+        let is_refused =
+            |at| is_wrong_thing(self.clause, at) || too_much(self.clause, at).is_some();
+        let wished = self.has(classes![Fetch])
+            || self.has(classes![Unlisted]) && !self.owns_unlisted()
+            || (0..self.clause.len()).any(is_refused);
+        self.values > 0 && !self.has(SCENE_NAMES) && !wished
+    }
+
+    /// Strange words, and nothing that ties them to the wanted object.
+    fn is_strange(&self) -> bool {
+        let elsewhere = self.unknown > 0 && self.has(classes![Unlisted]) && self.has(classes![Be]);
+        let tied = self.has(SCENE_NAMES)
+            || self.has(classes![Fetch It])
+            || self.points()
             || self.is_bare_noun()
+            || self.denies_by_far();
+        (self.unknown > 1 || elsewhere) && !tied
+    }
+
+    /// Returns whether the words point, as "that one", but not "this phone".
+    fn points(&self) -> bool {
+        let mut tags = self.clause.iter().enumerate();
+        tags.any(|(at, tag)| tag.is(Class::Pointer) && !self.next(at).is_some_and(Tag::is_unknown))
     }
 
     /// "the wok please", "the pepper on the shelf": all that is said names one thing.
-    fn is_bare_noun(&self) -> bool {
+    pub(crate) fn is_bare_noun(&self) -> bool {
         let [article, rest @ ..] = self.clause else { return false };
         let named = rest.iter().take_while(|tag| tag.is_unknown()).count();
         let locates = |tag: &Tag<'_>| {
             tag.is_role(Role::Place) || tag.is_any(classes![Preposition Determiner Courtesy Filler])
         };
-        WordSet::Article.has(article.word)
+        matches!(article.word, "the" | "a" | "an")
+            && self.is_everything
             && (1..=2).contains(&named)
             && rest[named..].iter().all(locates)
     }
 
-    /// "put it on the table", "wash the clear bowl", "I want you to fill the mug", "throw it away":
-    /// an order about our things, but not to fetch.
-    fn is_chore(&self) -> bool {
-        const LEADS: &[Class] = classes![
-            Filler Courtesy And But Join Yes WeakYes Repair Plain Auxiliary First Second Want Destination
-        ];
-        let orders = |&at: &usize| {
-            let throws_away = WordSet::Throwing.has(self.clause[at].word)
-                && self.clause[at..].iter().any(|tag| WordSet::Back.has(tag.word));
-            let before = at.checked_sub(1).map(|before| &self.clause[before]);
-            let is_noun =
-                before.is_some_and(|tag| tag.is_value() || tag.is_any(classes![Determiner First]));
-            (self.clause[at].is(Class::Put) || throws_away) && !is_noun
+    /// "not in a month of sundays"
+    fn denies_by_far(&self) -> bool {
+        self.values == 0
+            && matches!(self.clause,
+                [not, how, ..] if not.is(Class::Not) && how.is(Class::Preposition))
+    }
+
+    /// Only parts of a noun phrase: "blue", "the green one".
+    fn is_fragment(&self) -> bool {
+        !self.has(classes![Fetch Want Be Auxiliary First Second It Yes No Repair])
+    }
+
+    /// Returns whether the clause names something to fetch.
+    fn requests(&self) -> bool {
+        let named = self.has(classes![Head Attribute Unlisted Ordinal Other Pointer]);
+        self.has(SCENE_NAMES)
+            || self.has(classes![Unlisted])
+                && (self.unknown == 0 || self.is_fragment() && self.ends_unlisted())
+            || self.has(classes![Fetch Want]) && named
+            || self.wants_unknown()
+            || self.is_unknown_please()
+            || self.fetches_for_me()
+            || self.is_bare_noun()
+            || self.has(classes![Ordinal Other]) && self.unknown == 0
+    }
+
+    /// "I would like a newspaper", "can I have the dinosaur".
+    fn wants_unknown(&self) -> bool {
+        let verb = self.clause.iter().position(|tag| {
+            tag.is(Class::Want) && matches!(tag.last, "like" | "have" | "get" | "want" | "need")
+        });
+        let Some([article, rest @ ..]) = verb.map(|at| &self.clause[at + 1..]) else {
+            return false;
         };
-        let Some(verb) = (0..self.clause.len()).find(orders) else { return false };
-        let (lead, rest) = self.clause.split_at(verb);
-        let says = |class| lead.iter().any(|tag| tag.is(class));
-        let is_ours = |(at, tag): (usize, &Tag<'_>)| {
-            let is_thing = tag.is_value() && !tag.is_role(Role::Place);
-            at == 1 && tag.is(Class::It) || tag.is(Class::Head) || is_thing
-        };
-        // "I put it in the cabinet" is a report, "I want you to put it there" an order.
-        lead.iter().all(|tag| tag.is_any(LEADS))
-            && (says(Class::Second) || !says(Class::First) && !says(Class::Want))
-            && rest.iter().enumerate().any(is_ours)
+        let named = rest.iter().take_while(|tag| tag.is_unknown()).count();
+        article.is_any(classes![Determiner Quantifier Possessive])
+            && named == self.unknown
+            && (1..=2).contains(&named)
+            && rest[named..].iter().all(|tag| tag.is_any(classes![Courtesy Filler]))
+    }
+
+    /// "penicillin please"
+    fn is_unknown_please(&self) -> bool {
+        matches!(self.clause, [thing, please] if thing.is_unknown() && please.word == "please")
+            && self.is_everything
+    }
+
+    /// "get me …"
+    fn fetches_for_me(&self) -> bool {
+        let verb = self.clause.iter().position(|tag| tag.is(Class::Fetch));
+        verb.and_then(|at| self.next(at)).is_some_and(|next| next.word == "me")
+    }
+
+    /// "the allen key please": the noun is something that people ask for.
+    fn ends_unlisted(&self) -> bool {
+        let last = self.clause.iter().rev().find(|tag| !tag.is_any(classes![Courtesy Filler]));
+        last.is_some_and(|tag| tag.is(Class::Unlisted))
     }
 }

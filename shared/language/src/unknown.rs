@@ -11,7 +11,6 @@ use crate::relation_words::by_quality;
 use crate::tagger::{Tag, after, before};
 use crate::token_class::{Class, classes};
 use crate::vocabulary::is_unlisted_quality;
-use crate::word_sets::WordSet;
 
 /// Most words of a compound.
 const COMPOUND_MAX: usize = 3;
@@ -58,17 +57,18 @@ pub(crate) fn unknown_words(
 
 /// "next to the cup", "on the left", "third": the position of an object among others.
 fn relation(tags: &[Tag<'_>], at: usize) -> Option<Range<usize>> {
+    const ALONG: [&str; 4] = ["same", "along", "together", "around"];
     const NOUN_PHRASE: &[Class] =
         classes![Determiner Pointer Possessive Quantifier Head One Unlisted];
     let tag = &tags[at];
-    if tag.is(Class::Landmark) && !WordSet::Along.has(tag.word) {
+    if tag.is(Class::Landmark) && !ALONG.contains(&tag.word) {
         let in_phrase = |tag: &&Tag<'_>| {
             !tag.pauses() && (tag.is_value() || tag.is_unknown() || tag.is_any(NOUN_PHRASE))
         };
         let noun = tags[at + 1..].iter().take(LANDMARK_MAX).take_while(in_phrase).count();
         let next = after(tags, at);
         // "close to me", "nearby": the scene has no words for the places of robot and person.
-        let is_person = next.is_some_and(|next| WordSet::Person.has(next.word));
+        let is_person = next.is_some_and(|next| matches!(next.word, "me" | "you" | "us"));
         let is_bare = noun == 0 && !next.is_some_and(|next| next.is(Class::It));
         return (!is_person && !is_bare).then_some(at..at + 1 + noun);
     }
@@ -77,6 +77,7 @@ fn relation(tags: &[Tag<'_>], at: usize) -> Option<Range<usize>> {
 
 /// "the third bowl", "the one on the left", but not "first the bowl" and "the next one".
 fn is_counted(tags: &[Tag<'_>], at: usize) -> bool {
+    const SPOKEN_OF: [&str; 6] = ["last", "next", "previous", "former", "latter", "final"];
     let tag = &tags[at];
     if tag.word != tag.last {
         // "on the left", "number two", but not "the right one", which may be the wanted one.
@@ -85,7 +86,7 @@ fn is_counted(tags: &[Tag<'_>], at: usize) -> bool {
     let is_led = before(tags, at).is_some_and(|it| it.is_any(classes![Determiner Possessive]));
     // "the top shelf" is a place.
     let is_part = after(tags, at).is_some_and(|next| next.is_role(Role::Place));
-    let is_known = WordSet::SpokenOf.has(tag.word) || by_quality(tag.word).is_some();
+    let is_known = SPOKEN_OF.contains(&tag.word) || by_quality(tag.word).is_some();
     is_led && !is_part && !is_known
 }
 
@@ -105,7 +106,14 @@ fn is_in_noun_phrase(tags: &[Tag<'_>], at: usize) -> bool {
         return tags[at].is_unknown() && tags[..at].iter().all(|tag| tag.is_any(classes![Filler]));
     };
     let lead = classes![Determiner Unlisted Quantifier Possessive];
-    tags[at].is_unknown() && (before.is_value() || before.is_any(lead))
+    tags[at].is_unknown() && (before.is_value() || before.is_any(lead)) && !is_clause(tags, at)
+}
+
+/// "my grandmother gave me": the last unknown word is a verb.
+fn is_clause(tags: &[Tag<'_>], at: usize) -> bool {
+    let unknown = tags[at..].iter().take_while(|tag| tag.is_unknown()).count();
+    let is_object = |tag: &Tag<'_>| tag.word == "me" || tag.is_any(classes![First Second It]);
+    unknown > 1 && after(tags, at + unknown - 1).is_some_and(is_object)
 }
 
 /// The word with the rest of its compound, and its kind.

@@ -73,6 +73,7 @@ fn indistinguishable(scene: &Scene, found: &mut Vec<String>) {
         }
     }
 }
+
 /// The names and synonyms of an attribute's values, in lower case.
 fn names(attribute: &Attribute) -> impl Iterator<Item = String> + '_ {
     let names = |value: &Value| -> Vec<String> {

@@ -3,7 +3,7 @@
 import { existsSync } from "node:fs";
 import { tmpdir } from "node:os";
 
-/** Where Chromium is; the first of its usual places, or what WHICHONE_CHROMIUM says. */
+/** Where Chromium is; the first of its usual places, or what WHICHONE_CHROMIUM says. Without windows it takes less. */
 export const CHROMIUM = [
   process.env.WHICHONE_CHROMIUM,
   "/usr/bin/chromium-headless-shell",

@@ -4,13 +4,10 @@
 //! of the 94 that should halted then, and 89 of the 91 others did not. The rest was written after
 //! that code and before it was measured on them: 60 of 80 halted, and 74 of 78 others did not.
 
-use std::fs;
-use std::sync::LazyLock;
-
 use ::vocabulary::Language;
 use scene::{Intent, Question, Scene};
 
-use super::{fixture, root, scene};
+use super::{fixture, scene};
 
 use crate::{Reader, is_stop as halts_arm};
 
@@ -42,13 +39,6 @@ fn arm_halts_for_what_means_it() {
     assert!(wrong.is_empty(), "{right:?}\n{wrong}");
 }
 
-/// The files of dialogues.
-static DIALOGUES: LazyLock<String> = LazyLock::new(|| {
-    let folder = root().join("tests/talk/cases");
-    let files = fs::read_dir(folder).expect("dialogues").map(|file| file.expect("a file").path());
-    files.map(|path| fs::read_to_string(path).expect("a text")).collect()
-});
-
 /// The sentences of all tables and dialogues.
 fn all_sentences() -> impl Iterator<Item = &'static str> {
     let tables = [
@@ -57,13 +47,31 @@ fn all_sentences() -> impl Iterator<Item = &'static str> {
         fixture!("fresh_1.txt"),
         fixture!("fresh_2.txt"),
     ];
+    let dialogues = [
+        include_str!("../../../../tests/talk/cases/books.txt"),
+        include_str!("../../../../tests/talk/cases/bowls.txt"),
+        include_str!("../../../../tests/talk/cases/clothes.txt"),
+        include_str!("../../../../tests/talk/cases/cutlery.txt"),
+        include_str!("../../../../tests/talk/cases/fresh_open.txt"),
+        include_str!("../../../../tests/talk/cases/fresh_rest.txt"),
+        include_str!("../../../../tests/talk/cases/fresh_talk.txt"),
+        include_str!("../../../../tests/talk/cases/fresh_turns.txt"),
+        include_str!("../../../../tests/talk/cases/fresh_wishes.txt"),
+        include_str!("../../../../tests/talk/cases/issue.txt"),
+        include_str!("../../../../tests/talk/cases/medicine.txt"),
+        include_str!("../../../../tests/talk/cases/mugs.txt"),
+        include_str!("../../../../tests/talk/cases/office.txt"),
+        include_str!("../../../../tests/talk/cases/put_back.txt"),
+        include_str!("../../../../tests/talk/cases/toys.txt"),
+        include_str!("../../../../tests/talk/cases/workshop.txt"),
+    ];
     let of_tables = tables.into_iter().flat_map(super::sentences);
     let said = |line: &'static str| {
         let (first, rest) = line.split_once(' ')?;
         matches!(first, "you" | "meanwhile" | "late" | "afresh" | "asked" | "always")
             .then_some(rest)
     };
-    let of_dialogues = DIALOGUES.lines().filter_map(said);
+    let of_dialogues = dialogues.into_iter().flat_map(str::lines).filter_map(said);
     sentences().map(|(_, text)| text).chain(of_tables).chain(of_dialogues)
 }
 

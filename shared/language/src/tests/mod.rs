@@ -10,8 +10,6 @@ mod shapes;
 pub(crate) mod table;
 mod wordings;
 
-use std::fs;
-use std::path::Path;
 use std::sync::LazyLock;
 use std::time::Instant;
 
@@ -32,18 +30,25 @@ use fixture;
 
 const PUBLIC: &str = fixture!("public.jsonl");
 
-fn root() -> &'static Path {
-    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
-}
-
 pub(crate) fn scene(name: &str) -> Scene {
-    let path = match name {
-        "bowls" | "tools" | "markers" => format!("config/scenes/{name}.toml"),
-        "mugs" | "garments" | "pantry" => format!("tests/fixtures/utterances/{name}.toml"),
-        name => format!("tests/talk/scenes/{}.toml", name.trim_start_matches("talk_")),
+    let text = match name {
+        "bowls" => include_str!("../../../../config/scenes/bowls.toml"),
+        "tools" => include_str!("../../../../config/scenes/tools.toml"),
+        "markers" => include_str!("../../../../config/scenes/markers.toml"),
+        "talk_books" => include_str!("../../../../tests/talk/scenes/books.toml"),
+        "talk_clothes" => include_str!("../../../../tests/talk/scenes/clothes.toml"),
+        "talk_cutlery" => include_str!("../../../../tests/talk/scenes/cutlery.toml"),
+        "talk_medicine" => include_str!("../../../../tests/talk/scenes/medicine.toml"),
+        "talk_mugs" => include_str!("../../../../tests/talk/scenes/mugs.toml"),
+        "talk_office" => include_str!("../../../../tests/talk/scenes/office.toml"),
+        "talk_toys" => include_str!("../../../../tests/talk/scenes/toys.toml"),
+        "talk_workshop" => include_str!("../../../../tests/talk/scenes/workshop.toml"),
+        "mugs" => fixture!("mugs.toml"),
+        "garments" => fixture!("garments.toml"),
+        "pantry" => fixture!("pantry.toml"),
+        other => panic!("no scene {other}"),
     };
-    let text = fs::read_to_string(root().join(path)).expect("a scene");
-    Scene::from_toml(name, &text).expect("a shipped scene")
+    Scene::from_toml(name, text).expect("a shipped scene")
 }
 
 /// The sentences of a table that are plain ASCII.

@@ -120,6 +120,12 @@ fn reader_understands_the_development_cases() {
     check(include_str!("cases.txt"));
 }
 
+/// Sentences that no other table has the like of: each shows a rule that could be deleted unnoticed.
+#[test]
+fn reader_understands_sentences_whose_rules_are_seldom_needed() {
+    check(include_str!("seldom.txt"));
+}
+
 #[test]
 fn reader_understands_the_first_fresh_set() {
     check(fixture!("fresh_1.txt"));
