@@ -96,11 +96,11 @@ impl SceneQuestions {
 
     /// The number of objects that have all of the words, and of no excluded group all.
     pub(crate) fn suited(&self, words: &[WordId], excluded: &[Vec<WordId>]) -> usize {
-        let suits = |object: &&Box<[WordId]>| {
+        let suits = |object: &[WordId]| {
             let has_all = |words: &[WordId]| words.iter().all(|word| object.contains(word));
             has_all(words) && !excluded.iter().any(|group| has_all(group))
         };
-        self.objects.iter().filter(suits).count()
+        self.objects.iter().filter(|object| suits(object)).count()
     }
 
     /// The values of an attribute; none of one that the scene does not have.
