@@ -213,14 +213,19 @@ class Runner:
             thread.join()
 
     def run_alone(self, selected):
-        options = [f"--test-threads={os.cpu_count() or 2}", *self.lanes["alone"], *self.options]
+        """Runs those tests, one for each core."""
         for program in selected:
-            if not program.is_unit and self.has_any(program):
+            tests = [] if program.is_unit else self.tests_alone(program)
+            if tests:
+                included = [option for option in self.options if option == "--include-ignored"]
+                options = [f"--test-threads={os.cpu_count() or 2}", *included, "--exact", *tests]
                 self.record(self.run(program, options))
 
-    def has_any(self, program):
-        listed = self.run(program, ["--list", *self.lanes["alone"], *self.options]).output
-        return ": test" in listed
+    def tests_alone(self, program):
+        """Names of the tests in real time among those that were asked for."""
+        listed = self.run(program, ["--list", *self.options]).output
+        tests = re.findall(r"^(\S+): test$", listed, re.M)
+        return [test for test in tests if any(part in test for part in self.lanes["alone"])]
 
     def try_again(self, failed):
         """Tries failed tests again, alone. Returns those that passed, that physics was too slow for, and the rest."""
