@@ -64,16 +64,16 @@ fn fetch_through(ros: &mut Ros, group: &Group, disturb: impl FnOnce(&mut Ros)) {
 
 #[test]
 #[ignore = "needs rosmaster and rospy"]
-fn ros1_twelve_dialogues_end_with_picks_by_the_robot() {
+fn ros1_dialogues_end_with_picks_by_the_robot() {
     let (mut ros, group) = start();
-    for bowl in BOWLS.iter().cycle().take(12) {
+    for bowl in BOWLS {
         assert_delivered(&group, &group.fetch("get me the bowl", bowl), bowl);
     }
     assert_no_stale_motion(&mut ros, &group);
     let seen = ros.robot("look");
     let more_than = |key: &str, count: u64| seen[key].as_u64().unwrap() > count;
-    assert!(more_than("commands", 5000) && more_than("points", 500), "{seen}");
-    assert!(more_than("ratios", 10), "{seen}");
+    assert!(more_than("commands", 2500) && more_than("points", 250), "{seen}");
+    assert!(more_than("ratios", 5), "{seen}");
     assert!(ros.knows_topics_of("/whichone"));
     group.down();
     assert!(!ros.knows_topics_of("/whichone"), "the bridge has taken its leave");

@@ -88,7 +88,7 @@ fn study_prints_durations_that_can_be_the_costs() {
             ["aim_s", "point_s", "pick_s"].map(|key| object[key].as_f64().unwrap());
         assert!(0.5 < aim && aim + 2.0 < point && point < pick, "{object}");
     }
-    let words = ["--interactions", "40", "--users", "model"];
+    let words = ["--interactions", "40", "--users", "model", "--policies", "lookahead"];
     let text = String::from_utf8(study(&[&BOWLS[..], &words].concat()).succeeded()).unwrap();
     assert!(text.contains("Questions cost what is configured"), "{text}");
     assert!(text.contains("Is it in the dishwasher?"), "{text}");
