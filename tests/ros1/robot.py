@@ -222,7 +222,7 @@ class Robot:
         with self.lock:
             if word == "reset":
                 self.seen.update(commands=0, points=0, largest_error_rad=0.0, silence_s=0.0)
-                self.last_command = None
+                self.last_command, self.lead = None, 0.0
             elif word in ("stop", "go"):
                 self.stopped = word == "stop"
             elif word == "latencies":
