@@ -7,6 +7,7 @@ use std::collections::VecDeque;
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use service::bounded::push_bounded;
 use service::{Span, Time};
 
 use crate::mirrored::Mirrored;
@@ -93,10 +94,7 @@ impl<T: Mirrored> Outgoing<T> {
             self.last_number += 1;
             self.has_changed = true;
         }
-        self.kept.push_back((self.last_number, message));
-        if self.kept.len() > T::KEPT {
-            self.kept.pop_front();
-        }
+        push_bounded(&mut self.kept, T::KEPT, (self.last_number, message));
     }
 
     /// Returns the frame to be sent at `now`, if one is due.
@@ -150,10 +148,7 @@ impl<T: Mirrored> Incoming<T> {
                 if self.known.contains(&message) {
                     continue;
                 }
-                self.known.push_back(message.clone());
-                if self.known.len() > 2 * T::KEPT {
-                    self.known.pop_front();
-                }
+                push_bounded(&mut self.known, 2 * T::KEPT, message.clone());
             }
             let mut here = message;
             here.times(&mut |time| *time = offset.here(*time));

@@ -11,6 +11,7 @@ use std::collections::VecDeque;
 
 use messages::MotionOrder;
 use serde::{Deserialize, Serialize};
+use service::bounded::push_bounded;
 use service::stop_socket::{
     Progress, RESUME_AFTER, StopClient, StopError, StopState, default_patience,
 };
@@ -114,7 +115,7 @@ impl Register {
                 }
                 let is_too_soon = now < Time(seen.in_force_ns) + RESUME_AFTER;
                 if is_too_soon && !self.too_soon.contains(&request.key) {
-                    remember(&mut self.too_soon, request.key);
+                    push_bounded(&mut self.too_soon, KNOWN_MAX, request.key);
                 }
                 match self.too_soon.contains(&request.key) {
                     true => Err(StopError::TooSoon.to_string()),
@@ -132,16 +133,8 @@ impl Register {
         // Each has a stamp of its own, so that each can be named.
         let stamp = now.max(self.latest + Span(1));
         self.latest = stamp;
-        remember(&mut self.known, (key, stamp));
+        push_bounded(&mut self.known, KNOWN_MAX, (key, stamp));
         stamp
-    }
-}
-
-/// Adds an entry, and forgets the oldest one if there are too many.
-fn remember<T>(entries: &mut VecDeque<T>, entry: T) {
-    entries.push_back(entry);
-    if entries.len() > KNOWN_MAX {
-        entries.pop_front();
     }
 }
 

@@ -8,6 +8,7 @@ use std::collections::VecDeque;
 
 use messages::{Injection, PromptId, Receipt, RequestKey, Sound};
 use serde::{Deserialize, Serialize};
+use service::bounded::push_bounded;
 use service::submission::Submission;
 use service::{Span, Time};
 
@@ -150,10 +151,7 @@ impl<Q> Asked<Q> {
         waiting.submission.on_receipt(receipt);
         let receipts = waiting.submission.receipts()?.to_vec();
         let waiting = self.waiting.swap_remove(place);
-        self.answered.push_back((receipt.request(), receipts.clone()));
-        if self.answered.len() > ANSWERED_MAX {
-            self.answered.pop_front();
-        }
+        push_bounded(&mut self.answered, ANSWERED_MAX, (receipt.request(), receipts.clone()));
         Some((waiting.callers, receipts))
     }
 
@@ -240,10 +238,7 @@ impl Outbound {
         self.waiting.retain(|pending| pending.injection.key != key);
         let is_new = self.waiting.len() < before;
         if is_new {
-            self.answered.push_back((key, receipts.to_vec()));
-            if self.answered.len() > ANSWERED_MAX {
-                self.answered.pop_front();
-            }
+            push_bounded(&mut self.answered, ANSWERED_MAX, (key, receipts.to_vec()));
         }
         is_new
     }

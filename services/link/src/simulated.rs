@@ -11,6 +11,7 @@ use std::time::{Duration, Instant};
 use messages::topics;
 use messages::{ArmStatus, FixedText, MotionOrder, PolicyView, Receipt, RequestKey, Sound};
 use roster::{Name, Presence};
+use service::bounded::push_bounded;
 use service::exit::{Exit, Failure};
 use service::stop_socket::StopState;
 use service::{Time, clock};
@@ -298,10 +299,7 @@ impl Robot {
                 note: FixedText::truncated(text),
                 ..Receipt::default()
             };
-            mind.receipts.push_back((said.key, receipt));
-            if mind.receipts.len() > RECEIPTS {
-                mind.receipts.pop_front();
-            }
+            push_bounded(&mut mind.receipts, RECEIPTS, (said.key, receipt));
             receipt
         });
         let receipts = Receipts { sent_ns: clock::now().ns(), receipts: vec![receipt] };

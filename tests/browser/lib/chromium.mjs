@@ -3,7 +3,7 @@
 import { existsSync } from "node:fs";
 import { tmpdir } from "node:os";
 
-/** Where Chromium is; the first of its usual places, or what WHICHONE_CHROMIUM says. The shell draws no windows, which saves time. */
+/** Where Chromium is; the first of its usual places, or what WHICHONE_CHROMIUM says. Windows cost time. */
 export const CHROMIUM = [
   process.env.WHICHONE_CHROMIUM,
   "/usr/bin/chromium-headless-shell",

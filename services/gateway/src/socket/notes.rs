@@ -3,6 +3,8 @@
 use std::sync::PoisonError;
 use std::sync::atomic::Ordering;
 
+use service::bounded::push_bounded;
+
 use super::{AWAITED_MAX, Visit};
 use crate::audit::{Entry, Outcome};
 use crate::rules::{Answered, Order};
@@ -10,10 +12,7 @@ use crate::rules::{Answered, Order};
 impl Visit<'_> {
     pub(super) fn await_outcome(&self, order: &Order) {
         let mut awaited = self.awaited.lock().unwrap_or_else(PoisonError::into_inner);
-        if awaited.len() >= AWAITED_MAX {
-            awaited.pop_front();
-        }
-        awaited.push_back((order.id, order.what.clone()));
+        push_bounded(&mut awaited, AWAITED_MAX, (order.id, order.what.clone()));
     }
 
     pub(super) fn outcome(&self, answer: Answered) {
