@@ -65,6 +65,18 @@ impl Recorder {
         self.ask(name, program, ("POST", path, &[], Json::Null))
     }
 
+    /// Waits until robot and arm are both in the state, which they do not enter at once, and records it.
+    fn state(&mut self, name: &str, program: &Program, state: &str, arm: &Json) {
+        let found = wait_for(name, 20.0, || {
+            let answer = program.get("/state");
+            let (body, arm_now) = (&answer.body, &answer.body["arm"]);
+            let wanted = body["state"] == state
+                && (&arm_now["object"], &arm_now["stopped"]) == (&arm["object"], &arm["stopped"]);
+            wanted.then_some(answer)
+        });
+        self.add(name, ("GET", "/state"), &found);
+    }
+
     fn say(&mut self, name: &str, program: &Program, key: &str, body: Json) -> Answer {
         self.ask(name, program, ("POST", "/say", &[&format!("Idempotency-Key: {key}")], body))
     }
@@ -90,7 +102,8 @@ fn record_answers(recorder: &mut Recorder) {
     until_state(&hall, "idle");
     recorder.get("info", &Program::with_token(&group, None), "/info");
     recorder.get("no_token", &Program::with_token(&group, None), "/state");
-    recorder.get("state_idle", &hall, "/state");
+    let at_rest = json!({ "object": null, "stopped": false });
+    recorder.state("state_idle", &hall, "idle", &at_rest);
     recorder.say("right", &viewer, "k0", json!({ "text": "get me the bowl" }));
     let request = json!({ "text": "get me the bowl", "conversation": "hall" });
     recorder.say("question", &hall, "k1", request.clone());
@@ -98,13 +111,13 @@ fn record_answers(recorder: &mut Recorder) {
     let other = json!({ "text": "get me the clear bowl", "conversation": "kitchen" });
     recorder.say("other_words", &hall, "k1", other.clone());
     recorder.say("busy", &hall, "k2", other);
-    recorder.get("state_asking", &hall, "/state");
+    recorder.state("state_asking", &hall, "asking", &at_rest);
     let says = |text: &str| json!({ "text": text, "conversation": "hall" });
     let early = json!({ "text": "yes", "conversation": "hall", "seen": 999 });
     recorder.say("unseen_line", &hall, "k3", early);
     recorder.say("fetching", &hall, "k4", says("the clear one"));
-    until_state(&hall, "fetching");
-    recorder.get("state_fetching", &hall, "/state");
+    let with_clear = json!({ "object": "clear", "stopped": false });
+    recorder.state("state_fetching", &hall, "fetching", &with_clear);
     recorder.say("denied", &hall, "k5", says("no, not that one"));
     recorder.say("ended", &hall, "k6", says("never mind"));
     until_state(&hall, "idle");
@@ -115,15 +128,15 @@ fn record_answers(recorder: &mut Recorder) {
         let state = hall.get("/state").body;
         state["text"].as_str().is_some_and(|text| text.starts_with("I have stopped")).then_some(())
     });
-    recorder.get("state_stopped", &hall, "/state");
+    let stopped = json!({ "object": null, "stopped": true });
+    recorder.state("state_stopped", &hall, "stopped", &stopped);
     recorder.post("too_soon", &hall, "/motion/resume");
     let resumed = wait_for("the release", 20.0, || {
         Some(hall.post("/motion/resume")).filter(|answer| answer.status == 200)
     });
     recorder.add("resumed", ("POST", "/motion/resume"), &resumed);
     group.must(&["hold", "speech"]);
-    until_state(&hall, "held");
-    recorder.get("state_held", &hall, "/state");
+    recorder.state("state_held", &hall, "held", &at_rest);
     recorder.say("unavailable", &hall, "k8", says("the white one"));
     group.down();
 }
