@@ -160,14 +160,14 @@ fn every_viewer_may_stop_the_arm() {
     let mut viewer = group.page(&Visitor { role: "viewer", ..Visitor::operator(2) });
     have_it_fetch(&mut operator);
     viewer.until_part("arm", |arm| arm["moving"] == true && arm["phase"] == "moving");
-    let stopped = viewer.ask("stop", &Json::Null);
-    assert!(ok(&stopped) && stopped["stopped"] == true, "{stopped}");
+    assert_eq!(viewer.stop()["stopped"], true);
     viewer.until_part("turn", |turn| turn["state"] == "stopped");
     viewer.until_part("arm", |arm| arm["stopped"] == true && arm["moving"] == false);
     // Whoever may not speak to the robot can still tell it to stop.
     let said = viewer.ask("say", &json!({ "text": "stop" }));
     assert!(why(&said).contains("control") && why(&said).contains("the stop is given"), "{said}");
     assert!(why(&viewer.ask("resume", &Json::Null)).contains("control"));
+    viewer.stop();
     assert!(why(&operator.ask("resume", &Json::Null)).contains("less than 2 s"));
     std::thread::sleep(Duration::from_millis(2_200));
     assert!(ok(&operator.ask("resume", &Json::Null)));

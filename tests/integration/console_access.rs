@@ -151,7 +151,7 @@ fn operator_gets_in_beside_any_number_of_viewers() {
     let code =
         open[0].until("the end of the page that was idle for longest", |p| p.closed.clone()).0;
     assert_eq!(code, 4002);
-    assert!(ok(&next.ask("stop", &Json::Null)));
+    next.stop();
     drop((open, operator, next));
     group.down();
 }
@@ -184,7 +184,8 @@ fn page_loads_among_half_open_connections() {
         let (status, _, body) = http(&place, "GET", "/", &["Accept: text/html"], "");
         assert!(status == 200 && body.contains("</html>"), "{status}");
         drop(Page::open(&place, &Visitor { role: "viewer", ..Visitor::operator(n) }).unwrap());
-        assert!(ok(&page.ask("stop", &Json::Null)), "an open page works on");
+        // An open page works on.
+        page.stop();
     }
     let console = group.pid("console").as_raw_nonzero();
     let used = std::fs::read_dir(format!("/proc/{console}/fd")).unwrap().count();
@@ -232,7 +233,7 @@ fn large_bodies_take_no_memory_that_stays() {
         let held: Vec<TcpStream> = (0..60).map(|_| upload(session)).collect();
         let used = resident_mib(group.pid("console"));
         assert!(used < before + 64, "{before} MiB before, {used} MiB with {}", held.len());
-        assert!(ok(&page.ask("stop", &Json::Null)));
+        page.stop();
         assert_eq!(http(&place, "GET", "/api/state", &[], "").0, 200);
     }
     let used = resident_mib(group.pid("console"));

@@ -151,7 +151,7 @@ fn watch_on_a_terminal_shows_the_dialogue_obeys_keys_and_follows_its_size() {
     terminal.wait_for("a question", |lines| has(lines, "robot  ") && has(lines, "decision: ask"));
     terminal.press("s");
     terminal.wait_for("the stop", |lines| has(lines, "STOPPED"));
-    assert_eq!(group.arm()["stopped"], true);
+    group.wait_shown(true);
     // Right after a stop nothing resumes, so the key is pressed until it counts.
     terminal.wait_for("the confirmed stop", |lines| has(lines, "the arm is stopped, at rest"));
     wait_for("what a release asks", 15.0, || {
@@ -162,7 +162,7 @@ fn watch_on_a_terminal_shows_the_dialogue_obeys_keys_and_follows_its_size() {
     assert_eq!(group.arm()["stopped"], true);
     terminal.press("resume\r");
     terminal.wait_for("the release", |lines| !has(lines, "STOPPED"));
-    assert_eq!(group.arm()["stopped"], false);
+    group.wait_shown(false);
     resize(&terminal.master, 60, 20);
     terminal.wait_for("a smaller picture", |lines| {
         has(lines, "speech ready")

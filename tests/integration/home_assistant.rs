@@ -123,13 +123,14 @@ fn record_answers(recorder: &mut Recorder) {
     until_state(&hall, "idle");
     recorder.post("nothing_open", &hall, "/cancel");
     recorder.say("stopped", &hall, "k7", says("stop"));
-    recorder.post("stop", &hall, "/motion/stop");
+    recorder.add("stop", ("POST", "/motion/stop"), &hall.stop());
     wait_for("the line about it", 10.0, || {
         let state = hall.get("/state").body;
         state["text"].as_str().is_some_and(|text| text.starts_with("I have stopped")).then_some(())
     });
     let stopped = json!({ "object": null, "stopped": true });
     recorder.state("state_stopped", &hall, "stopped", &stopped);
+    hall.stop();
     recorder.post("too_soon", &hall, "/motion/resume");
     let resumed = wait_for("the release", 20.0, || {
         Some(hall.post("/motion/resume")).filter(|answer| answer.status == 200)

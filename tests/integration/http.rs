@@ -146,11 +146,13 @@ fn stop_asks_for_no_owner_and_is_answered_at_rest() {
     assert_eq!((kitchen.status, &kitchen.body["code"]), (423, &json!("busy")));
     assert!(kitchen.header("retry-after").is_some());
 
-    let stopped = guard.post("/motion/stop");
-    assert_eq!((stopped.status, &stopped.body["at_rest"]), (200, &json!(true)), "{stopped:?}");
-    let state = hall.get("/state").body;
-    assert_eq!((&state["state"], &state["arm"]["moving"]), (&json!("stopped"), &json!(false)));
+    assert_eq!(guard.stop().body["at_rest"], true);
+    wait_for("a stopped arm at rest", 20.0, || {
+        let state = hall.get("/state").body;
+        (state["state"] == "stopped" && state["arm"]["moving"] == false).then_some(())
+    });
     assert_eq!(guard.post("/motion/resume").status, 403);
+    guard.stop();
     let early = hall.post("/motion/resume");
     assert_eq!((early.status, &early.body["code"]), (409, &json!("too_soon")), "{early:?}");
     wait_for("the release", 20.0, || (hall.post("/motion/resume").status == 200).then_some(()));
@@ -159,10 +161,8 @@ fn stop_asks_for_no_owner_and_is_answered_at_rest() {
     // In words, by who may not talk, while others do.
     let said = guard.say("stop!");
     assert_eq!((said.status, &said.reply()["kind"]), (200, &json!("stopped")), "{said:?}");
-    assert_eq!(
-        (&said.body["utterance"], group.arm()["moving"].clone()),
-        (&Json::Null, json!(false))
-    );
+    assert_eq!(said.body["utterance"], Json::Null);
+    wait_for("rest", 20.0, || (group.arm()["moving"] == false).then_some(()));
     assert_eq!(guard.say("the white one").status, 403);
     wait_for("the release", 20.0, || (hall.post("/motion/resume").status == 200).then_some(()));
     let outcome = group.await_pick(None);
@@ -325,8 +325,7 @@ fn gateway_passes_programs_with_their_persons_rights() {
     assert_eq!(bob.say("stop").status, 403, "people elsewhere do not stop what they only see");
     let reply = ann.converse(&bowls(), "get me the bowl", "white2");
     assert_eq!(reply["kind"], "fetching");
-    let stopped = ann.post("/motion/stop");
-    assert_eq!((stopped.status, &stopped.body["stopped"]), (200, &json!(true)));
+    assert_eq!(ann.stop().body["stopped"], true);
     for (person, what, outcome) in
         [("ann", "say", "ordered"), ("ann", "stop", "done"), ("bob", "stop", "refused")]
     {

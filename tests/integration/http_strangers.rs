@@ -41,7 +41,7 @@ fn ten_thousand_wrong_tokens_are_refused_and_delay_no_one() {
         for _ in 0..20 {
             assert_eq!(program.get("/state").status, 200);
         }
-        assert_eq!(program.post("/motion/stop").status, 200);
+        program.stop();
     });
     let [delayed, at_once] = counts.map(AtomicUsize::into_inner);
     assert_eq!(delayed + at_once, GUESSES);
@@ -125,7 +125,7 @@ fn slow_large_and_unreadable_requests_get_typed_answers() {
         program.console.place
     )
     .unwrap();
-    assert_eq!(program.post("/motion/stop").status, 200);
+    program.stop();
     let mut text = [0; 4_096];
     let count = slow.read(&mut text).unwrap();
     let text = String::from_utf8_lossy(&text[..count]);

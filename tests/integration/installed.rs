@@ -101,7 +101,7 @@ fn assert_is_identified(installed: &Installed) {
     assert!(services.iter().all(|it| it["version"] == version), "{status}");
     let build = line.trim().strip_prefix("whichone ").unwrap();
     for name in ["supervisor", "policy", "arm"] {
-        let log = std::fs::read_to_string(installed.group.paths().log_file(name)).unwrap();
+        let log = installed.group.wait_for_log(name, "\n");
         let first = log.lines().next().unwrap();
         assert!(first.contains(&format!("whichone-{name} {build}")), "{first}, not {build}");
     }

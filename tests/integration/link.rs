@@ -72,7 +72,7 @@ fn link_motion_stop_works_from_a_mirror() {
     let state = mirror.group.must(&["stop-motion", "--json"]).json();
     println!("stop at the mirror to arm at rest: {:.0} ms", began.elapsed().as_secs_f64() * 1e3);
     assert_eq!((&state["stopped"], &state["at_rest"]), (&true.into(), &true.into()), "{state}");
-    assert_eq!(robot.arm()["stopped"], true);
+    robot.wait_shown(true);
     let is_shown = || (mirror.group.arm()["stopped"] == true).then_some(());
     wait_for("the stop at the mirror", 5.0, is_shown);
     let is_free = || (robot.arm()["stopped"] == false).then_some(());

@@ -26,7 +26,7 @@ fn dialogue_ends_with_a_pick_by_the_robot() {
     let group = group();
     assert_eq!(group.service("baxter")["actual"], "ready");
     assert_delivered(&group, &group.fetch("the clear bowl", "clear"));
-    assert_eq!(group.arm()["hindrance"], "none");
+    wait_for_arm(&group, "nothing hinders it", |arm| arm["hindrance"] == "none");
     group.down();
 }
 
@@ -34,8 +34,9 @@ fn dialogue_ends_with_a_pick_by_the_robot() {
 fn object_denied_in_the_gripper_goes_back_through_a_stop_and_a_killed_arm() {
     let group = group();
     group.say("the clear bowl");
-    wait_for_arm(&group, "the carry", |arm| arm["phase"] == "holding" && arm["moving"] == true);
-    assert_eq!(group.arm()["object"], "clear");
+    wait_for_arm(&group, "the carry", |arm| {
+        arm["object"] == "clear" && arm["phase"] == "holding" && arm["moving"] == true
+    });
     group.say("no, not that one");
     wait_for_arm(&group, "the way back", |arm| arm["phase"] == "returning");
     group.must(&["stop-motion"]);

@@ -256,7 +256,7 @@ fn ros1_objects_of_detectors_and_markers_are_fetched_by_request() {
         let off = found.iter().zip(place).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(off < 1e-6, "{class} at {found:?}");
     }
-    let log = group.must(&["logs", "baxter"]).stdout;
+    let log = group.wait_for_log("baxter", "unknown identifier `99`");
     assert_eq!(log.matches("unknown identifier `99`").count(), 1, "{log}");
 
     // What waited while the bridge stood still is old, whatever the clock of the camera says. The bridge passes on the

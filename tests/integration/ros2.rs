@@ -93,7 +93,7 @@ fn ros2_cyclone_objects_of_detectors_and_markers_are_fetched_by_request() {
         figure("sightings") > 10 && figure("unknown_ids") > 1
     });
     assert_eq!(seen["diagnostics"]["whichone: ROS 2 node"]["values"]["without_pose"], "0");
-    let log = group.must(&["logs", "ros2"]).stdout;
+    let log = group.wait_for_log("ros2", "unknown identifier `dog`");
     assert_eq!(log.matches("unknown identifier `dog`").count(), 1, "{log}");
 
     let clear = named("clear")["name"].as_str().unwrap();

@@ -127,10 +127,9 @@ fn roots_orders_to_the_motion_stop_of_another_users_group_are_confirmed() {
     assert_eq!(group.paths().run().metadata().unwrap().uid(), OTHER_USER);
     let state = group.must(&["stop-motion", "--timeout", "50", "--json"]).json();
     assert_eq!((&state["stopped"], &state["at_rest"]), (&true.into(), &true.into()), "{state}");
-    let shown = as_other_user(|| group.arm());
-    assert_eq!(shown["stopped"], true, "{shown}");
+    as_other_user(|| group.wait_shown(true));
     group.release_stop();
-    assert_eq!(as_other_user(|| group.arm())["stopped"], false);
+    as_other_user(|| group.wait_shown(false));
     // What root cannot do there says how it is done, and destroys nothing of the running group.
     let ended = group.call(&["say", "hello"]);
     assert_ne!(ended.code, Some(0), "{ended:?}");

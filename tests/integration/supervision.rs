@@ -17,6 +17,7 @@ fn status_and_logs_show_services_and_restart_names_an_unknown_one() {
         }
     }
     assert_eq!(group.call(&["status"]).code, Some(0));
+    group.wait_for_log("policy", "ready");
     let log = group.must(&["logs", "policy", "--tail", "5"]).stdout;
     assert!(log.contains("ready"), "{log}");
     let unknown = group.call(&["restart", "legs"]);

@@ -4,12 +4,15 @@ use whichone_tests::{Group, wait_for};
 
 /// Answers every question with what `answer` says to the n-th, until the interaction is over.
 fn answer_with(group: &Group, answer: impl Fn(usize) -> &'static str) -> serde_json::Value {
+    let mut said = None;
     for n in 0..40 {
-        let dialogue = group.dialogue();
+        let dialogue = wait_for("the words to be applied", 20.0, || {
+            Some(group.dialogue()).filter(|it| it["applied"].as_u64() >= said)
+        });
         if n > 0 && (dialogue["interaction"] == 0 || dialogue["decision"] == "pick") {
             break;
         }
-        group.say(answer(n));
+        said = group.must(&["say", answer(n), "--json"]).json()["utterance"].as_u64();
     }
     group.await_pick(None)
 }

@@ -279,6 +279,14 @@ impl Page {
         self.until(verb, |page| page.messages.iter().find(|message| message["id"] == id).cloned())
     }
 
+    /// Stops the arm, and returns what the first order that was confirmed in time is answered. On a busy machine one may
+    /// be late, which its answer says.
+    pub fn stop(&mut self) -> Json {
+        wait_for("a confirmed stop", 20.0, || {
+            Some(self.ask("stop", &Json::Null)).filter(|answer| answer["ok"] == true)
+        })
+    }
+
     /// Sends a command and returns its number.
     pub fn begin(&mut self, verb: &str, more: &Json) -> u64 {
         self.next += 1;

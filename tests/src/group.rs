@@ -196,12 +196,26 @@ impl Group {
 
     /// The arm's state, as `watch` shows it.
     pub fn arm(&self) -> Value {
-        self.must(&["watch", "--once", "--json"]).json()["arm"].take()
+        self.shown("arm")
     }
 
     /// The dialogue's state, as `watch` shows it.
     pub fn dialogue(&self) -> Value {
-        self.must(&["watch", "--once", "--json"]).json()["dialogue"].take()
+        self.shown("dialogue")
+    }
+
+    /// A part of the state, which `watch` lacks while its service is late.
+    fn shown(&self, part: &str) -> Value {
+        wait_for(part, 10.0, || {
+            let mut state = self.must(&["watch", "--once", "--json"]).json();
+            Some(state[part].take()).filter(|part| !part.is_null())
+        })
+    }
+
+    /// Waits until the arm shows that it is stopped, or free: an order is confirmed a moment before.
+    pub fn wait_shown(&self, stopped: bool) {
+        let shown = || (self.arm()["stopped"] == stopped).then_some(());
+        wait_for(&format!("stopped: {stopped}"), 20.0, shown);
     }
 
     /// Follows the group's state, as `watch` shows it, until `fact` returns a value, and returns it. One program

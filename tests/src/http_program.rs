@@ -103,6 +103,14 @@ impl Program {
         self.ask("GET", path, &[], "")
     }
 
+    /// Stops the arm, and returns the answer to the first order that was confirmed in time. On a busy machine one may be
+    /// late, which its answer says.
+    pub fn stop(&self) -> Answer {
+        wait_for("a confirmed stop", 20.0, || {
+            Some(self.post("/motion/stop")).filter(|answer| answer.status == 200)
+        })
+    }
+
     /// Orders something.
     pub fn post(&self, path: &str) -> Answer {
         self.ask("POST", path, &[], "")

@@ -71,9 +71,9 @@ impl Ros {
     /// Starts a master and a robot, and waits until the robot is registered.
     pub fn start() -> Self {
         let folder = tempfile::Builder::new().prefix("ros").tempdir().expect("a temporary folder");
+        generate_messages(folder.path());
         let free = TcpListener::bind("127.0.0.1:0").and_then(|listener| listener.local_addr());
         let port = free.expect("a free port").port();
-        generate_messages(folder.path());
         let master = start_master(folder.path(), port);
         wait_for_master(port);
         let robot = start_peer(folder.path(), port, "robot");

@@ -81,7 +81,11 @@ export class Group {
   /** Releases the motion stop, once a release counts: 2 s after the latest stop, by the arm's clock. */
   async release() {
     await releaseCounts();
-    await this.must("resume-motion");
+    await until("the release", async () => {
+      const ended = await this.call("resume-motion");
+      if (ended.code !== 0 && !ended.stderr.includes("less than 2 s before")) throw new Error(ended.stderr);
+      return ended.code === 0;
+    });
   }
 
   /** As `must`, read as JSON. @param {string[]} words */

@@ -119,7 +119,7 @@ test.describe("without a connection", () => {
     await group.must("release", "console");
     const [first, last] = t("stop.late", { s: "#" }).split("#");
     await expect(page.getByText(new RegExp(`${first}[0-9]+${last}`))).toBeVisible();
-    expect(await stopped(group)).toBe(true);
+    await expect.poll(() => stopped(group)).toBe(true);
     await expectStopped(page);
     await expect(page.locator(":root[data-stale]")).toHaveCount(0);
     const greeted = sockets.slice(before).filter((sent) => sent.length > 0);

@@ -275,7 +275,7 @@ impl Stops<'_> {
                     confirmed_ms.push(began.elapsed().as_secs_f64() * 1e3);
                 };
                 rest_ms.extend(self.joints.stop_by(order));
-                assert_eq!(self.robot.arm()["stopped"], true);
+                self.robot.wait_shown(true);
                 self.release();
                 // Stops come at other moments of the motion, too.
                 std::thread::sleep(Duration::from_millis(20 * (rest_ms.len() as u64 % 7)));

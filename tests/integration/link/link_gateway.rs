@@ -27,12 +27,12 @@ fn robot_elsewhere_is_listed_and_commanded_through_the_gateway() {
     let here = gateway.console("r1", &secret);
     let mut page =
         wait_for("the mirror's page", 40.0, || Page::open(&here, &Visitor::operator(1)).ok());
-    assert_eq!(page.ask("stop", &json!({}))["ok"], true);
-    assert_eq!(robot.arm()["stopped"], true);
+    page.stop();
+    robot.wait_shown(true);
     // No release counts sooner, and the gateway passes on few orders at a time.
     std::thread::sleep(std::time::Duration::from_millis(2_200));
     wait_for("a release", 10.0, || (page.ask("resume", &json!({}))["ok"] == true).then_some(()));
-    assert_eq!(robot.arm()["stopped"], false);
+    robot.wait_shown(false);
     assert_eq!(page.ask("say", &json!({ "text": "get me the bowl" }))["ok"], true);
     robot.wait_for_decision("ask");
     gateway.wait_for_entry("ann", "say", "done");
