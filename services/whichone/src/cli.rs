@@ -70,38 +70,6 @@ pub struct Common {
     pub json: bool,
 }
 
-/// The program with few verbs, those whose time is felt: the arguments of all the others take a tenth of the time of a
-/// `say` to define.
-#[derive(Debug, Parser)]
-#[command(args_override_self = true, disable_help_flag = true)]
-struct QuickCli {
-    #[command(flatten)]
-    common: Common,
-    #[command(subcommand)]
-    verb: QuickVerb,
-}
-
-#[derive(Debug, Subcommand)]
-enum QuickVerb {
-    Say(SayArgs),
-    Status,
-    #[command(alias = "halt")]
-    StopMotion(MotionArgs),
-    ResumeMotion(MotionArgs),
-}
-
-impl From<QuickCli> for Cli {
-    fn from(QuickCli { common, verb }: QuickCli) -> Self {
-        let verb = match verb {
-            QuickVerb::Say(args) => Verb::Say(args),
-            QuickVerb::Status => Verb::Status,
-            QuickVerb::StopMotion(args) => Verb::StopMotion(args),
-            QuickVerb::ResumeMotion(args) => Verb::ResumeMotion(args),
-        };
-        Self { common, verb }
-    }
-}
-
 /// Verbs for which `--group` is meaningless: it is accepted there, and not listed.
 const WITHOUT_GROUP: [&str; 14] = [
     "check",
@@ -147,10 +115,6 @@ impl Cli {
     /// A usage error, or a request for help or the version.
     pub fn parse_line(line: impl IntoIterator<Item = OsString>) -> Result<Self, clap::Error> {
         let line: Vec<OsString> = line.into_iter().collect();
-        // Help and errors are those of the whole program.
-        if let Ok(quick) = QuickCli::try_parse_from(&line) {
-            return Ok(quick.into());
-        }
         let mut definition = Self::definition();
         let matches = definition.try_get_matches_from_mut(&line);
         let matches = matches.map_err(|error| with_nearest_verb(error, &line, &definition))?;
@@ -338,20 +302,4 @@ pub enum Verb {
     /// Verbs of the laboratory.
     #[command(flatten)]
     Laboratory(Box<laboratory::Verb>),
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn verbs_whose_time_is_felt_have_a_definition_of_their_own() {
-        for line in
-            ["say the clear bowl", "--group lab status --json", "stop-motion", "resume-motion"]
-        {
-            let line = std::iter::once("whichone").chain(line.split(' '));
-            assert!(QuickCli::try_parse_from(line.clone()).is_ok(), "{line:?}");
-        }
-        assert!(QuickCli::try_parse_from(["whichone", "up"]).is_err());
-    }
 }
