@@ -34,18 +34,20 @@ impl Pronunciations {
         letter_to_sound: &LetterToSound,
     ) -> Self {
         let words: BTreeSet<&str> = words.into_iter().collect();
-        let mut entries = look_up(dictionary, &words.iter().copied().collect());
-        let lacking: Vec<&str> = words.into_iter().filter(|w| !entries.contains_key(*w)).collect();
-        let known = look_up(dictionary, &lacking.iter().flat_map(|word| parts(word)).collect());
+        // Parts as well: the dictionary has a hundred thousand lines, which are read once.
+        let wanted = words.iter().flat_map(|word| parts(word)).chain(words.iter().copied());
+        let known = look_up(dictionary, &wanted.collect());
+        let mut entries = BTreeMap::new();
         let mut missing = Vec::new();
-        for word in lacking {
-            let phones = hyphenated(word, &known, letter_to_sound)
-                .or_else(|| compound(word, &known))
-                .or_else(|| letter_to_sound(word));
-            match phones {
-                Some(phones) => {
-                    entries.insert(word.to_owned(), vec![phones]);
-                }
+        for word in words {
+            let composed = || {
+                hyphenated(word, &known, letter_to_sound)
+                    .or_else(|| compound(word, &known))
+                    .or_else(|| letter_to_sound(word))
+                    .map(|phones| vec![phones])
+            };
+            match known.get(word).cloned().or_else(composed) {
+                Some(phones) => drop(entries.insert(word.to_owned(), phones)),
                 None => missing.push(word.to_owned()),
             }
         }
@@ -91,9 +93,6 @@ impl Pronunciations {
 /// Returns the pronunciations of the wanted words in the dictionary.
 fn look_up(dictionary: &str, wanted: &HashSet<&str>) -> BTreeMap<String, Vec<String>> {
     let mut known: BTreeMap<String, Vec<String>> = BTreeMap::new();
-    if wanted.is_empty() {
-        return known;
-    }
     for line in dictionary.lines() {
         let Some((entry, phones)) = line.split_once([' ', '\t']) else { continue };
         let word = entry.split_once('(').filter(|(w, _)| !w.is_empty()).map_or(entry, |(w, _)| w);
