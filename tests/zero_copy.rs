@@ -112,10 +112,11 @@ fn assert_zero_copy<N: Node, T: WireMessage + Default>(
     fill: impl Fn(&mut T),
     find: impl Fn(N::In<'_>, &mut dyn FnMut(&T)),
 ) {
-    for is_first in [true, false, false] {
+    for is_first in [true, false, false, false, false] {
         let before = ALLOCATIONS.get();
         let mut is_filled_in_place = !is_first;
         let filled = |message: &mut T| {
+            assert!(*message == T::default(), "nothing of an earlier message");
             fill(message);
             is_filled_in_place = is_filled_in_place || is_shared(message);
         };

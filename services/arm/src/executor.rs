@@ -42,7 +42,6 @@ pub(crate) struct Program {
 /// One motion of the arm and its fingers.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Step {
-    /// Kind of motion.
     pub(crate) kind: MotionPhase,
     /// Phase of a pick that must be durable before the step begins.
     pub(crate) phase: Option<PickPhase>,

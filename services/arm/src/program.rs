@@ -58,7 +58,6 @@ struct Start {
     steps: VecDeque<Step>,
     /// Arms after those steps.
     arms: [Joints; 2],
-    /// Obstacles.
     obstacles: Vec<Cuboid>,
 }
 
@@ -167,7 +166,6 @@ impl Planner<'_> {
         Program { purpose: Purpose::Pick(pick), limb: held.limb, steps }
     }
 
-    /// Aims at `object`.
     pub(crate) fn aim(&self, object: ObjectId) -> Result<Program, Refusal> {
         let place = self.world.place(object).ok_or(Refusal::NoPlace)?;
         let start = self.start(None, 0.0)?;

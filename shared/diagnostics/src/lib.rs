@@ -5,15 +5,6 @@
 //! descriptions share these types, so that every error looks alike.
 //!
 //! This crate is pure: no IO, no clock, no threads.
-//!
-//! | contents | file |
-//! |---|---|
-//! | one diagnostic, a list of them, and their collection | `diagnostic.rs` |
-//! | values with the place that they were read from | `source.rs` |
-//! | conversion of TOML and JSON | `text.rs` |
-//! | reading a table key by key, with types and ranges | `fields.rs`, `fields/nested.rs` |
-//! | JSON Schema of what a reader accepts | `schema.rs` |
-//! | "did you mean" | `spelling.rs` |
 
 mod diagnostic;
 mod fields;

@@ -48,7 +48,6 @@ pub(crate) fn is_named_alone(item: &Json) -> bool {
 }
 
 impl Schema {
-    /// Sets the schema of a key.
     pub(crate) fn set(&mut self, key: &str, schema: Json) {
         self.properties.insert(key.to_owned(), schema);
     }

@@ -162,7 +162,7 @@ impl Waiting {
 
 /// Returns the key of a request: the same for each repetition of it, in every incarnation of the console. Each token is
 /// one client of the speech service.
-pub(crate) fn request_key(token: &str, key: &str) -> RequestKey {
+pub fn request_key(token: &str, key: &str) -> RequestKey {
     let hash = |text: &str| {
         let mut hash = scene::StableHash::default();
         hash.text(text);

@@ -31,7 +31,7 @@ mod uses;
 pub mod verb;
 
 pub use api::{Api, Rules, open};
-pub use feed::Feed;
+pub use feed::{Feed, request_key};
 pub use routes::routes;
 pub use state::Robot;
 pub use tokens::{Right, Token, Tokens, tokens_file};

@@ -2,14 +2,6 @@
 //! kinematics, collision checking, trajectories, and plans that fetch an object, put it back or
 //! point at it.
 //!
-//! | module | contents |
-//! |---|---|
-//! | `kinematics` | chain of joints, joint limits, inverse kinematics |
-//! | `collision` | shapes of arms, body and objects, and the distances between them |
-//! | `trajectory` | joint paths, time-optimal and jerk-limited timing, stops |
-//! | `planning` | grasps, planning scenes, picks, deliveries and pointing |
-//! | `robot` | a robot from its description, with its shapes |
-//!
 //! This crate is pure: no IO, no clock, no threads; equal arguments give equal results. Plans keep
 //! the joint limits to the last bit and the velocity, acceleration and jerk limits at every
 //! instant, and touch nothing in the planning scene. What cannot be planned is a typed error.

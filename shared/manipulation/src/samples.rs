@@ -32,7 +32,6 @@ pub(crate) fn robot() -> &'static Robot {
     Robot::baxter()
 }
 
-/// One of its limbs.
 pub(crate) fn arm(limb: Limb) -> &'static Arm {
     robot().arm(limb)
 }

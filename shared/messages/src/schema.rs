@@ -102,8 +102,7 @@ pub fn payload_fields(types: Result<Registry, Error>) -> Vec<Field> {
 /// assert_eq!(Label::NAME, "Label");
 /// ```
 ///
-/// An enum that is not listed makes the schema that of an error, which a test of the payload can
-/// find ([`is_traced`]).
+/// An enum that is not listed makes the schema that of an error: a field `error`.
 #[macro_export]
 macro_rules! payloads {
     ($($payload:ident [$($enum:ty),*])+) => {
@@ -145,11 +144,6 @@ macro_rules! traced {
 }
 #[doc(hidden)]
 pub use traced;
-
-/// Returns whether the types in the payload could be traced, as its schema requires.
-pub fn is_traced<T: Schema>() -> bool {
-    T::fields().iter().all(|field| field.name != UNTRACED)
-}
 
 /// Declares a wire struct: `#[repr(C)]`, copyable, zeroed by default, sendable without a copy, and
 /// with its schema and the check of its codes.

@@ -69,17 +69,6 @@ fn wire_layout_matches_the_golden_file() {
     assert_eq!(text, golden, "the wire layout has changed; see the head of this file");
 }
 
-#[test]
-fn wire_structs_have_no_padding() {
-    for Layout { name, size, fields, .. } in structs() {
-        let end = fields.iter().fold(0, |end, field| {
-            assert_eq!(field.offset, end, "{name}: a gap before {}", field.name);
-            end + field.size
-        });
-        assert_eq!(end, size, "{name}: a gap at its end");
-    }
-}
-
 /// The keys of payloads are derived from their types, so that no edit of a type goes unnoticed.
 #[test]
 fn payload_schemas_hold_every_type_and_variant() {

@@ -2,16 +2,6 @@
 //! questions and that studies count.
 //!
 //! This crate is pure, except for [`load`], which reads configurations and checks the reach.
-//!
-//! | contents | file |
-//! |---|---|
-//! | loading a configuration with all checks | `load.rs` |
-//! | robot, limb and plan settings from a configuration | `setup.rs` |
-//! | reachability of every object | `reach.rs` |
-//! | places for objects that cannot be reached | `arrange.rs` |
-//! | durations of the arm's trajectories | `motion.rs` |
-//! | durations of speech: robot, person, recogniser | `speech.rs` |
-//! | durations of every question and pick in a scene | `measure.rs` |
 
 mod arrange;
 mod load;

@@ -2,15 +2,6 @@
 //!
 //! The only crate that replaces files or uses the system's folders for temporary files: names of
 //! new files are random and must not exist, and a file's next writer removes leftovers of a crash.
-//!
-//! | contents | file |
-//! |---|---|
-//! | folders that only their owner can enter | `folders.rs` |
-//! | temporary folders | `temporary.rs` |
-//! | atomic replacement of files | `draft.rs` |
-//! | files and folders that a user names for output | `output.rs` |
-//! | older versions of a file | `older.rs` |
-//! | opening of regular files for reading, and the texts of a folder | `regular.rs` |
 
 mod draft;
 pub mod folders;

@@ -1,36 +1,4 @@
 //! Scene files in TOML (`config/scenes/*.toml`); docs/scenes.md explains every key.
-//!
-//! ```toml
-//! name = "markers"
-//! noun = "marker"
-//! ask_wanted = "Which {noun} would you like?"   # optional, as are all wordings
-//! ask_point = ["This one?", "Is it this one?"]  # several are taken in turn
-//!
-//! [[attributes]]
-//! name = "color"
-//! synonyms = ["colour"]              # other words for the attribute, optional
-//! role = "quality"                   # or "kind" or "place"; guessed from `spoken` by default
-//! ask_yes_no = ["Is it {value}?", "Is the {noun} {value}?"]
-//! ask_which = "What colour is it?"
-//! values = ["red", { name = "blue", synonyms = ["navy"], spoken = "dark blue" }]
-//!
-//! [[objects]]
-//! name = "left_one"
-//! attributes = { color = "red" }     # an object may lack an attribute
-//! xyz = [0.7, 0.1, -0.15]            # metres, frame `base`; a scene may do without places
-//! yaw = 0.5                          # radians, optional
-//! size = [0.14, 0.014, 0.014]        # metres
-//! grasp_width = 0.014                # metres
-//! mass_kg = 0.02                     # optional
-//! form = "hollow"                    # has a rim, as a bowl; optional, "solid" by default
-//! wall_deg = 8                       # slope of a bowl's wall, optional
-//! ```
-//!
-//! In a wording `{value}` is the value as `spoken` has it (in yes or no questions alone),
-//! `{attribute}` the attribute's name and `{noun}` the scene's noun.
-//!
-//! Attributes, values and objects are lists because their order counts: it breaks ties between
-//! questions and names the entries of a belief.
 
 use diagnostics::{Diagnostics, Fields, Report, Source, Table};
 use serde_json::{Value as Json, json};

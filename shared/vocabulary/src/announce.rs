@@ -1,16 +1,7 @@
 //! The announced pick: "I will get the clear bowl" can be denied until the object is gripped.
 //!
-//! With `c` ([`Announce::heard`]) the probability that a denial is said and heard in time, and `η`
-//! that of an erroneous one, a denial is heard with `c·η` if the announced object is wanted and
-//! with `c·(1−η)` if it is not (a wrong announcement is denied even if the wanted object is
-//! absent). Announcing `i` at belief `b` is worth
-//!
-//! `b_i (1−cη)·correct − Σ_{j≠i} b_j (1−c(1−η))·wrong + P(denial) (−cost_s + γ V(b'))`,
-//!
-//! where `b'` is the belief after the denial, which the dialogue manager counts twice: as "no" to
-//! [`Question::Point`](scene::Question::Point) of `i`, and as the utterance that stops a moving
-//! robot, which is not a slip of the tongue. So `η/(1−η) = (ε/(1−ε))²`. With `c = 0` a pick is
-//! final, as in the publication.
+//! docs/pomdp.md, "The announced pick", states what announcing is worth, in this notation. With
+//! `c = 0` a pick is final, as in the publication.
 
 use serde::{Deserialize, Serialize};
 

@@ -95,7 +95,6 @@ impl Sound {
     }
 }
 
-/// The sounds of a text.
 fn sounds(text: &str) -> Vec<Sound> {
     let text = normalise(text);
     let mut all: Vec<char> = Vec::new();

@@ -22,17 +22,19 @@ impl Machine {
 }
 
 #[test]
-fn motion_stop_halts_within_100_ms_on_a_full_disk() {
-    for (object, after_s) in
-        [(0, 0.3), (1, 1.5), (2, 2.2), (3, 2.9), (4, 3.6), (5, 5.0), (0, 6.4), (2, 8.5)]
+fn motion_stop_halts_within_100_ms_also_on_a_full_disk_and_the_pick_resumes() {
+    let moments = [(0, 0.3), (1, 1.5), (2, 2.2), (3, 2.9), (4, 3.6), (5, 5.0), (0, 6.4), (2, 8.5)];
+    for ((object, after_s), is_full) in moments.into_iter().flat_map(|it| [(it, false), (it, true)])
     {
         let mut machine = Machine::new(config());
         machine.act(pick(1, object));
         machine.run(after_s);
-        machine.disk_fails();
-        machine.run(0.03);
+        if is_full {
+            machine.disk_fails();
+            machine.run(0.03);
+        }
         let state = machine.order_by_socket(MotionOrder::Stop);
-        assert!(state.stopped && !state.durable, "{state:?}");
+        assert!(state.stopped && state.durable != is_full, "{state:?}");
         let posture = machine.robot.posture();
         machine.run(1.0);
         assert_eq!(machine.robot.posture(), posture, "object {object} after {after_s} s");
@@ -43,6 +45,9 @@ fn motion_stop_halts_within_100_ms_on_a_full_disk() {
         machine.awaits_release();
         assert!(!machine.order_by_socket(MotionOrder::Resume).stopped);
         machine.delivers(1, object);
+        machine.run_until("at rest", Machine::rests);
+        assert_eq!(machine.status().stopped, 0);
+        assert!(is_full || machine.robot.grasps() == 1);
     }
 }
 

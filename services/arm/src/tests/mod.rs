@@ -76,7 +76,6 @@ fn driver_of_another_program_is_an_error() {
     assert!(failure.message.contains(expected), "{failure}");
 }
 
-/// Returns the scene of the markers.
 fn markers() -> scene::Scene {
     shipped(None, &[("group.scene".to_owned(), "markers".to_owned())]).scene
 }

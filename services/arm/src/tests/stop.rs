@@ -2,28 +2,6 @@
 
 use super::*;
 
-#[test]
-fn motion_stop_halts_within_100_ms_and_the_pick_resumes() {
-    for (object, after_s) in
-        [(0, 0.3), (1, 1.5), (2, 2.2), (3, 2.9), (4, 3.6), (5, 5.0), (0, 6.4), (2, 8.5)]
-    {
-        let mut machine = Machine::new(config());
-        machine.act(pick(1, object));
-        machine.run(after_s);
-        machine.motion(MotionOrder::Stop);
-        machine.run(0.1);
-        let posture = machine.robot.posture();
-        machine.run(1.0);
-        assert_eq!(machine.robot.posture(), posture, "object {object} after {after_s} s");
-        assert_eq!((machine.status().stopped, machine.status().moving), (1, 0));
-        machine.motion(MotionOrder::Resume);
-        machine.delivers(1, object);
-        machine.run_until("at rest", Machine::rests);
-        assert_eq!(machine.status().stopped, 0);
-        assert_eq!(machine.robot.grasps(), 1);
-    }
-}
-
 /// Whether set points have ended is not what people beside the arm see.
 #[test]
 fn arm_that_is_measured_to_move_is_not_at_rest() {

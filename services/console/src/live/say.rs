@@ -1,8 +1,7 @@
 //! The service `say`: an utterance of the operator, as if typed.
 
-use messages::{ClientId, RequestKey};
+use http_api::request_key;
 use recording::live::Service;
-use scene::StableHash;
 use serde::Deserialize;
 use serde_json::json;
 
@@ -59,20 +58,10 @@ pub fn read(request: &[u8]) -> Result<Words, String> {
         if key.is_empty() || key.len() > KEY_MAX {
             return Err(format!("key: expected 1 to {KEY_MAX} bytes, found {}", key.len()));
         }
-        words.key = Some(request_key(&key));
+        // All live viewers are one client of the speech service.
+        words.key = Some(request_key("live viewers", &key));
     }
     Ok(words)
-}
-
-/// Returns the key of the submission, the same for every connection and every start of the console.
-/// All live viewers are one client of the speech service.
-fn request_key(key: &str) -> RequestKey {
-    let hash = |text: &str| {
-        let mut hash = StableHash::default();
-        hash.text(text);
-        hash.value()
-    };
-    RequestKey::new(ClientId(hash("foxglove")), hash(key))
 }
 
 #[cfg(test)]

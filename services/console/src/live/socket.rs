@@ -48,7 +48,7 @@ pub async fn serve(socket: WebSocket, connection: Arc<Connection>, app: Arc<App>
     app.live.viewers.leave(viewer);
     app.hub.metrics.live_viewers.dec();
     app.hub.leave(viewer, clock::now());
-    tracing::info!(%viewer, "a live viewer has disconnected: {ended}");
+    tracing::info!(%viewer, "a live viewer has disconnected: {ended:?}");
     if matches!(ended, Ended::Slow) {
         app.hub.metrics.dropped.inc();
     }

@@ -58,7 +58,7 @@ pub(super) async fn serve(socket: WebSocket, connection: Arc<Connection>, app: A
         ended = read(&mut into, viewer, &app.hub) => ended,
     };
     app.hub.leave(viewer, clock::now());
-    tracing::info!(%viewer, "a page has disconnected: {ended}");
+    tracing::info!(%viewer, "a page has disconnected: {ended:?}");
     if matches!(ended, Ended::Slow) {
         app.hub.metrics.dropped.inc();
     }
@@ -115,22 +115,6 @@ impl From<axum::Error> for Ended {
             Some(SocketError::Protocol(_)) => Self::Protocol,
             _ => Self::Page,
         }
-    }
-}
-
-impl std::fmt::Display for Ended {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::Page => "it was closed",
-            Self::Replaced => "it is open elsewhere",
-            Self::GaveWay => "it gave way to an operator",
-            Self::Slow => "it did not read",
-            Self::Silent => "nothing was received from it",
-            Self::TooLong => "it sent a message that is too long",
-            Self::NotText => "it sent a text that is not UTF-8",
-            Self::Protocol => "it broke the WebSocket protocol",
-            Self::Console => "the console ends",
-        })
     }
 }
 

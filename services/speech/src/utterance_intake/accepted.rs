@@ -13,7 +13,6 @@ use crate::{Fx, Out};
 /// Utterances that may wait to be applied; beyond it users are asked to wait.
 const WAITING_MAX: usize = 256;
 
-/// Accepted utterances.
 #[derive(serde::Serialize, serde::Deserialize)]
 pub(crate) struct AcceptedUtterances {
     outbox: Outbox<Accepted>,

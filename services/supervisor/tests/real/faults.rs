@@ -13,22 +13,6 @@ use supervisor::machine::{Actual, Failure};
 use crate::harness::{Group, WAIT_MS, fixture, send, service, wait_for, with};
 
 #[test]
-fn killed_service_is_restarted_without_affecting_others() {
-    let group = Group::ready(vec![
-        service("arm", &[]),
-        with(service("policy", &[]), "after", json!(["arm"])),
-    ]);
-    let policy = group.pid("policy");
-    send(group.pid("arm"), Signal::KILL);
-    let again = group.until_ready("arm", 2);
-    let last = again.last_exit.unwrap();
-    assert_eq!((last.exit, last.incarnation, last.killed), (ProcessExit::Signal(9), 1, false));
-    assert_eq!(again.restarts, 1);
-    assert_eq!(group.pid("policy"), policy);
-    assert_eq!(group.status().state, GroupState::Ready);
-}
-
-#[test]
 fn service_that_rejects_its_configuration_is_held() {
     let group = Group::start(vec![service("arm", &["exits", "78"]), service("policy", &[])]);
     let held = group.until("arm", Actual::Held);
@@ -115,14 +99,6 @@ fn service_without_heartbeats_is_aborted_and_restarted() {
     let last = again.last_exit.unwrap();
     assert_eq!(last.failure, Some(Failure::NoBeat));
     assert_eq!(last.exit, ProcessExit::Signal(6), "it leaves a trace of where it hung");
-}
-
-#[test]
-fn suspended_process_is_detected_and_killed() {
-    let group = Group::ready(vec![with(service("arm", &[]), "watchdog_ms", json!(400))]);
-    send(group.pid("arm"), Signal::STOP);
-    let again = group.until_ready("arm", 2);
-    assert_eq!(again.last_exit.unwrap().failure, Some(Failure::NoBeat));
 }
 
 #[test]

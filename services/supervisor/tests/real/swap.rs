@@ -1,5 +1,6 @@
 use serde_json::json;
 use service::control::{RefusalKind, Request};
+use service::exit::ProcessExit;
 use service::status::Actual;
 
 use crate::harness::{Group, WAIT_MS, fixture, send, service, with};
@@ -19,7 +20,10 @@ fn swapped_command_survives_restarts() {
     assert_eq!((arm.actual, arm.incarnation), (Actual::Ready, 2));
     assert_eq!(arm.swapped.unwrap()[1..], ["ends-slowly", "0"]);
     send(group.pid("arm"), rustix::process::Signal::KILL);
-    assert!(group.until_ready("arm", 3).swapped.is_some());
+    let again = group.until_ready("arm", 3);
+    assert!(again.swapped.is_some());
+    let last = again.last_exit.unwrap();
+    assert_eq!((last.exit, last.incarnation, last.killed), (ProcessExit::Signal(9), 2, false));
     assert_eq!(group.pid("policy"), policy);
     let original = Request::Restart { service: "arm".into(), original: true, wait_ms: WAIT_MS };
     group.done(&original);

@@ -188,7 +188,6 @@ fn json_of(view: &TableView) -> Json {
     })
 }
 
-/// One line of `feed`.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct FeedLine {

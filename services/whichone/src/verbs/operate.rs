@@ -30,7 +30,6 @@ pub(super) fn ask(
     call(&paths.control_socket(), request, wait + ANSWER_PATIENCE)
 }
 
-/// Returns the status of the group.
 pub(super) fn status_of(paths: &GroupPaths) -> Result<GroupStatus, CallError> {
     match ask(paths, &Request::Status, Duration::ZERO)? {
         Reply::Status(status) => Ok(*status),

@@ -123,7 +123,6 @@ impl Manager {
         self.reply(state, remark, at);
     }
 
-    /// Notes the state of the motion stop.
     pub(super) fn note_stop(&mut self, state: &mut State, stop: MotionStop, at: Time) {
         let (before, is_latched) = (state.stop.motion.is_latched(), stop.is_latched());
         state.stop.motion = stop;

@@ -1,30 +1,5 @@
 //! The dialogue manager: the transition of the dialogue's state. It is pure, deterministic, and the
 //! same in the policy service, in the check of its journal, in studies and in simulations.
-//!
-//! | file | contents |
-//! |---|---|
-//! | `setup.rs` | what the manager decides by |
-//! | `state.rs`, `stop.rs`, `line.rs` | state, causes of its changes, acts and lines |
-//! | `rules.rs` | the rules for an utterance, in order; `turn.rs`: the facts that they ask for |
-//! | `intents.rs` | intents: cancelling, starting over, stopping |
-//! | `attribution.rs` | the questions that an utterance answers |
-//! | `inform.rs`, `correct.rs` | content of an utterance: while deciding, and while the arm fetches |
-//! | `concede.rs` | what the user cannot tell, and what does not matter |
-//! | `decide.rs` | decisions, asked of the planner and carried out |
-//! | `misfit.rs` | offers where what was said fits no object |
-//! | `references.rs`, `relate.rs` | "the other one", "the same again"; "the leftmost", "longer than the red one" |
-//! | `hand_over.rs`, `held_back.rs` | refusals after a hand-over; picks while the motion stop is latched |
-//! | `queue.rs` | requests for several objects |
-//! | `replies.rs` | answers to what the user asks |
-//! | `people.rs`, `acquaint.rs` | people who gave their name, and what is learned about them |
-//! | `beliefs.rs`, `pointing.rs` | prior, updates, the user model, gestures |
-//! | `acts.rs`, `answerable.rs` | decisions as standing acts; the question as which their lines can be answered |
-//! | `put_back.rs` | putting back what was handed over |
-//! | `kept.rs` | what was called off and cannot go back |
-//! | `floor.rs` | deferred decisions and response windows |
-//! | `reconfigure.rs`, `evidence.rs` | an interaction under another scene or other settings |
-//! | `objects.rs` | objects from perception |
-//! | `refold.rs` | check of a journal |
 
 mod acquaint;
 mod acts;

@@ -142,7 +142,6 @@ impl Manager {
     }
 }
 
-/// Returns the likeliest reading with that intent.
 pub(super) fn likeliest(said: &Utterance, intent: Intent) -> Option<&Reading> {
     let fits = said.interpretations.iter().filter(|it| it.reading.intent == intent);
     let best = fits.reduce(|best, next| if next.weight > best.weight { next } else { best });

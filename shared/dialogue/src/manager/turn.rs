@@ -17,7 +17,6 @@ pub(super) struct Turn<'a> {
     pub(super) shares: Vec<f64>,
     /// The most probable intent.
     pub(super) intent: Intent,
-    /// The time.
     pub(super) at: Time,
 }
 
@@ -49,7 +48,6 @@ pub(super) struct Statement<'a> {
     pub(super) spoken_of: Option<Mark>,
     /// Whether the utterance can open an interaction.
     pub(super) is_request: bool,
-    /// The time.
     pub(super) at: Time,
 }
 

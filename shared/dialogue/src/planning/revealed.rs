@@ -1,17 +1,8 @@
 //! An upper bound from an easier problem, for yes/no questions about attributes: whether an answer
 //! was right is revealed, for the compensation of [`Told`].
 //!
-//! Each revelation leaves a set of classes with the same proportions, since all of them answered
-//! alike. The robot's own belief continues as ever: it gives the probabilities of answers, and so
-//! the compensation. A right answer leads on; a wrong one, which is rare, is worth no more than
-//! telling the class. The questions available, how evenly they split, and the doubt left by a
-//! verification all count as they are, so this bound is tighter than any price of information.
-//!
-//! The search is depth-first, the most promising question first. It passes over the questions that
-//! are bounded by the best one, and leaves a belief as soon as its bound is low enough for the
-//! question that led to it to be bounded so. It continues while the gap of the easier problem's
-//! bounds exceeds a threshold, weighed with the probability that is left, and is repeated with half
-//! the threshold. It keeps key, bound and threshold of a belief: earlier bounds remain valid.
+//! docs/pomdp.md, "Certified bounds on hard scenes", has proof and search. It keeps key, bound
+//! and threshold of a belief: earlier bounds remain valid.
 
 use std::collections::HashMap;
 

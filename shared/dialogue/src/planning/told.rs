@@ -1,23 +1,6 @@
 //! The value for a planner that learns the wanted class, but plays for compensated stakes.
 //!
-//! **Compensation.** To a policy's rewards anything may be added that is zero on average given what
-//! the policy knows: its value stays. A planner that knows more does better all the same, but the
-//! compensation takes most of that away again (information relaxation; Brown, Smith and Sun 2010).
-//! Here a question, whose classes that say yes have probability `p`, adds `B (I − d)`, where `d` is
-//! the information that its answers carry given on which side the wanted class is, and `I` their
-//! mean. A pick adds `κ(b_i) = max(0, K + B ln b_i)` if class `i` is wanted and another one is
-//! picked, and takes the mean of that from the picked one. `B` and each class's `K` are free.
-//!
-//! **Told the class.** Of the belief such a planner needs the probability `x` of its class alone,
-//! if it may choose the `p ≥ x` of every question. Written `w(x) = B ln x + r(x)`, the logarithms
-//! of question and belief cancel:
-//!
-//! `r(x) = max(stop, max_p −c + B·I(p) − (1−γ) B (d(p) + ln x) + γ E r(x'))`,
-//!
-//! with `x'` the probability after the answer. `r` is nearly constant, so a step function bounds
-//! it: every cell takes the greatest right side over all `x` and `p` of a pair of cells, term by
-//! term. The iteration starts from a function that this operation does not increase, as is checked,
-//! so each iterate is an upper bound.
+//! docs/pomdp.md, "Certified bounds on hard scenes", derives the bound in this notation.
 
 use vocabulary::Costs;
 

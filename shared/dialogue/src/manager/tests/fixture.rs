@@ -32,7 +32,6 @@ pub(super) struct Settings {
     pub(super) turns: TurnTaking,
 }
 
-/// A change of settings.
 pub(super) type Change = fn(&mut Settings);
 
 impl Settings {

@@ -94,7 +94,6 @@ impl Alternating {
         [first, s1, e0, e1, w0, w1, w2]
     }
 
-    /// Returns the tool on the last frame.
     #[inline(always)]
     pub(crate) fn tool_on(&self, last: &Frame) -> Frame {
         if self.plain_tool {

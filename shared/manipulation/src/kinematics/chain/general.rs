@@ -86,7 +86,6 @@ impl General {
         frames
     }
 
-    /// Returns the tool on the last frame.
     pub(crate) fn tool_on(&self, last: &Frame) -> Frame {
         last.compose(&self.tool)
     }

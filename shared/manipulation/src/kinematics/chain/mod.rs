@@ -109,12 +109,7 @@ impl Chain {
         self.tool_frame(q).isometry()
     }
 
-    /// Geometric Jacobian of `<limb>_gripper` at `q`.
-    pub fn jacobian(&self, q: &Joints) -> Jacobian {
-        self.tool_and_jacobian(q).1
-    }
-
-    /// Tool frame and Jacobian together, for the price of little more than one.
+    /// Tool frame and geometric Jacobian together, for the price of little more than one.
     #[inline]
     pub fn tool_and_jacobian(&self, q: &Joints) -> (Frame, Jacobian) {
         match &self.geometry {

@@ -29,7 +29,7 @@ fn jacobians_equal_the_reference() {
         let q: Joints = serde_json::from_value(sample["q"].clone()).unwrap();
         let rows: [[f64; 7]; 6] =
             serde_json::from_value(sample["jacobian_rows_vxyz_wxyz"].clone()).unwrap();
-        let jacobian = arm(limb).chain.jacobian(&q);
+        let jacobian = arm(limb).chain.tool_and_jacobian(&q).1;
         for (i, row) in rows.iter().enumerate() {
             for (j, entry) in row.iter().enumerate() {
                 assert!((jacobian[(i, j)] - entry).abs() < 1e-9, "{limb} {q:?} row {i} column {j}");

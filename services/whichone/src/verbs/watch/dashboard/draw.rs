@@ -87,7 +87,6 @@ impl<'a> Picture<'a> {
     }
 }
 
-/// Draws one frame.
 pub(super) fn draw(frame: &mut Frame<'_>, picture: &Picture<'_>, keyboard: &Keyboard) {
     let is_wide = frame.area().width >= WIDE;
     let below = if is_wide { Vec::new() } else { vec![services_line(picture)] };

@@ -39,7 +39,6 @@ pub(super) enum Mode {
     Releasing(String),
 }
 
-/// The keyboard.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Keyboard {
     mode: Mode,
