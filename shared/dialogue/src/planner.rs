@@ -25,7 +25,8 @@ pub struct DecisionProblem<'a> {
     pub announce: Announce,
     /// The user's concessions about attributes in this interaction.
     pub concessions: &'a Concessions,
-    /// Questions that are not asked again: their answers are known.
+    /// Questions that are not asked again, as their answers are known, nor are choices that offer
+    /// the value of one.
     pub spent: &'a [Question],
 }
 
@@ -51,8 +52,19 @@ impl DecisionProblem<'_> {
     pub fn questions(&self) -> Vec<Question> {
         let mut questions = self.model.questions(self.actions);
         let is_barred = |it: &Question| it.attribute().is_some_and(|k| self.concessions.bar(k));
-        questions.retain(|question| !self.spent.contains(question) && !is_barred(question));
+        questions.retain(|question| !self.is_spent(*question) && !is_barred(question));
         questions
+    }
+
+    /// Whether a question is not asked again.
+    pub(crate) fn is_spent(&self, question: Question) -> bool {
+        let offers = |spent: &Question| match (question, *spent) {
+            (Question::Choice(k, options), Question::Attribute(of, v)) => {
+                k == of && options.contains(v)
+            }
+            _ => *spent == question,
+        };
+        self.spent.iter().any(offers)
     }
 
     /// Cost of an action itself (a positive number); a pick is paid by its outcome.

@@ -197,17 +197,29 @@ impl Interaction {
         push_bounded(&mut self.prompts, prompt);
     }
 
-    /// Returns the questions that were asked as often as one is ([`ASKED_MAX`]). A user who may
-    /// take a value for another one says the same again.
+    /// Returns the questions that were asked as often as one is ([`ASKED_MAX`]); a choice counts
+    /// as a question about each of its values. A user who may take a value for another one says the
+    /// same again.
     pub(super) fn spent(&self) -> Vec<Question> {
         if self.posterior.said().is_none() {
             return Vec::new();
         }
-        let asked = |question| self.prompts.iter().filter(|it| it.question == question).count();
-        let mut all: Vec<Question> = self.prompts.iter().map(|prompt| prompt.question).collect();
-        all.retain(|question| *question != Question::None && asked(*question) >= ASKED_MAX);
-        all.dedup();
-        all
+        let each = |question| match question {
+            Question::Choice(k, options) => {
+                options.values().iter().map(|v| Question::Attribute(k, *v)).collect()
+            }
+            Question::None => Vec::new(),
+            other => vec![other],
+        };
+        let mut asked: Vec<(Question, usize)> = Vec::new();
+        for question in self.prompts.iter().flat_map(|prompt| each(prompt.question)) {
+            match asked.iter_mut().find(|(known, _)| *known == question) {
+                Some((_, times)) => *times += 1,
+                None => asked.push((question, 1)),
+            }
+        }
+        asked.retain(|(_, times)| *times >= ASKED_MAX);
+        asked.into_iter().map(|(question, _)| question).collect()
     }
 
     /// Adds a line said since the pick was ordered; the oldest one is dropped for lack of room.

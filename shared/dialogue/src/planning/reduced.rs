@@ -228,8 +228,7 @@ impl Reduced {
         let mut kept: Vec<usize> = kept.collect();
         kept.sort_unstable();
         let kept = kept.into_iter().map(|place| found[place]);
-        self.queries =
-            kept.filter(|query| !problem.spent.contains(&self.question(*query))).collect();
+        self.queries = kept.filter(|query| !problem.is_spent(self.question(*query))).collect();
     }
 
     /// Collects the classes to point at: each but those that a question distinguishes at no higher

@@ -29,6 +29,8 @@ pub(super) struct Settings {
     pub(super) prior: Prior,
     pub(super) people: Acquaintance,
     pub(super) gestures: bool,
+    /// Whether choices are asked.
+    pub(super) choices: bool,
     pub(super) turns: TurnTaking,
 }
 
@@ -56,7 +58,12 @@ impl Settings {
             model,
             costs: Costs::SECONDS,
             durations: self.durations.clone(),
-            actions: Actions { mode: self.mode, attribute: true, which: false, choice: false },
+            actions: Actions {
+                mode: self.mode,
+                attribute: true,
+                which: false,
+                choice: self.choices,
+            },
             announce: Announce { heard: 0.0, cost_s: 8.0 },
             prior: self.prior,
             gestures: self.gestures.then(|| (Gestures::default(), [1.6, 0.0, 0.45])),
@@ -80,6 +87,7 @@ pub(super) fn settings() -> Settings {
         prior: Prior { objects: PriorObjects::Uniform, smoothing: 1.0, absent: 0.0 },
         people: Acquaintance::default(),
         gestures: false,
+        choices: false,
         turns: TurnTaking::default(),
     }
 }

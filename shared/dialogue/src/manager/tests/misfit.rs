@@ -1,12 +1,13 @@
 //! Users who take a value for another one, and say so each time.
 
-use super::fixture::{Settings, answer, first, reply, settings, settings_of};
+use super::fixture::{Settings, answer, first, reply, settings_of};
 use crate::manager::{Manager, State};
-use crate::rendering;
+use crate::{Model, rendering};
 use scene::{AttributeId, ObjectId, Question, Reading, Response, ValueId};
 use std::sync::LazyLock;
 use vocabulary::ActKind;
 
+const BOWLS: &str = include_str!("../../../../../config/scenes/bowls.toml");
 const TOOLS: &str = include_str!("../../../../../config/scenes/tools.toml");
 
 /// A user who wants an object and takes one attribute for another value.
@@ -16,15 +17,27 @@ struct User {
 }
 
 impl User {
-    fn answer(&self, manager: &Manager, question: Question) -> Response {
-        let model = manager.model();
+    /// The value that the user takes the object to have.
+    fn perceived(&self, model: &Model, k: AttributeId) -> Option<ValueId> {
+        if k == self.mistaken.0 { Some(self.mistaken.1) } else { model.value(self.wanted, k) }
+    }
+
+    fn answer(&self, settings: &Settings, manager: &Manager, question: Question) -> Reading {
+        let perceived = |k| self.perceived(manager.model(), k);
         let holds = match question {
             Question::Point(object) => object == self.wanted,
-            Question::Attribute(k, v) if k == self.mistaken.0 => v == self.mistaken.1,
-            Question::Attribute(k, v) => model.has(self.wanted, k, v),
+            Question::Attribute(k, v) => perceived(k) == Some(v),
+            Question::Choice(k, options) => {
+                if let Some(value) = perceived(k).filter(|value| options.contains(*value)) {
+                    let name = &settings.scene.attributes()[k.index()].values[value.index()].name;
+                    let base = vec![settings.scene.word_named(name).expect("a word of a value")];
+                    return Reading { base, ..Reading::default() };
+                }
+                false
+            }
             other => panic!("{other:?}"),
         };
-        if holds { Response::Yes } else { Response::No }
+        answer(if holds { Response::Yes } else { Response::No })
     }
 }
 
@@ -48,11 +61,11 @@ fn asked(state: &State) -> Vec<Question> {
 }
 
 /// Talks until the robot picks, and returns the last state.
-fn talk(manager: &mut Manager, user: &User) -> State {
+fn talk(settings: &Settings, manager: &mut Manager, user: &User) -> State {
     let mut state = first(manager, Reading::default());
     while state.act.kind == ActKind::Ask {
-        let said = user.answer(manager, state.act.question);
-        state = reply(manager, &state, answer(said));
+        let said = user.answer(settings, manager, state.act.question);
+        state = reply(manager, &state, said);
     }
     state
 }
@@ -63,17 +76,21 @@ struct Talks {
     ends: Vec<(User, State)>,
 }
 
-/// Conversations about the bowls and about the tools.
-static TALKS: LazyLock<[Talks; 2]> = LazyLock::new(|| {
-    [settings(), settings_of(TOOLS)].map(|settings| {
+/// Conversations about the bowls and about the tools, by choices and by yes or no.
+static TALKS: LazyLock<Vec<Talks>> = LazyLock::new(|| {
+    let ways = [(true, 0.004), (true, 0.0125), (false, 0.0125)];
+    let all = [BOWLS, TOOLS].into_iter().flat_map(|scene| ways.map(|way| (scene, way)));
+    let talks = all.map(|(scene, (choices, misperception))| {
+        let settings = Settings { choices, misperception, ..settings_of(scene) };
         let mut manager = settings.manager();
         let users = misbeliefs(&settings).into_iter();
         let ends = users.map(|user| {
-            let end = talk(&mut manager, &user);
+            let end = talk(&settings, &mut manager, &user);
             (user, end)
         });
         Talks { ends: ends.collect(), settings }
-    })
+    });
+    talks.collect()
 });
 
 #[test]
@@ -84,8 +101,16 @@ fn no_misbelief_leads_round_in_circles() {
             let asked = asked(end);
             let named = || settings.scene.object(user.wanted).name.clone();
             assert!(asked.len() <= 15, "{} {:?}: {asked:?}", named(), user.mistaken);
-            for question in &asked {
-                let times = asked.iter().filter(|it| *it == question).count();
+            // A choice asks about each of its values.
+            let values = |question: &Question| match *question {
+                Question::Choice(k, options) => {
+                    options.values().iter().map(|v| Question::Attribute(k, *v)).collect()
+                }
+                other => vec![other],
+            };
+            let all: Vec<Question> = asked.iter().flat_map(values).collect();
+            for question in &all {
+                let times = all.iter().filter(|it| *it == question).count();
                 assert!(times <= 2, "{} {:?}: {question:?}", named(), user.mistaken);
             }
         }
@@ -98,9 +123,7 @@ fn what_fits_nothing_is_offered_before_it_is_fetched() {
     for Talks { settings, ends } in &*TALKS {
         let manager = settings.manager();
         let model = manager.model();
-        let perceived = |user: &User, k: AttributeId| {
-            if k == user.mistaken.0 { Some(user.mistaken.1) } else { model.value(user.wanted, k) }
-        };
+        let perceived = |user: &User, k: AttributeId| user.perceived(model, k);
         let fits = |user: &User, i: ObjectId| {
             let mut attributes = (0..model.attributes()).map(AttributeId::from);
             attributes.all(|k| model.value(i, k) == perceived(user, k))
@@ -115,6 +138,10 @@ fn what_fits_nothing_is_offered_before_it_is_fetched() {
             let denies = asked(end).iter().any(|question| match question {
                 Question::Attribute(k, v) => {
                     (perceived(user, *k) == Some(*v)) != model.has(picked, *k, *v)
+                }
+                Question::Choice(k, options) => {
+                    let named = |value: Option<ValueId>| value.filter(|it| options.contains(*it));
+                    named(perceived(user, *k)) != named(model.value(picked, *k))
                 }
                 _ => false,
             });
