@@ -64,6 +64,9 @@ pub(crate) fn examine(
     let files = Files::find(dir, &tree, scene, &mut report);
     let mut examined = check(tree, report, files, None);
     if let Some(settings) = &mut examined.settings {
+        let (key, help) = (["console", "discovery"], "set console.listen = \"0.0.0.0:8377\"");
+        let unannounced = settings.console.unannounced();
+        warnings.extend(unannounced.map(|what| settings.diagnostic(&key, what, help)));
         settings.resolved.warnings = warnings;
     }
     examined
