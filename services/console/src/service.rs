@@ -24,7 +24,6 @@ use service::worker_channel;
 use service::{Span, Time};
 
 use crate::bridge::{self, Bridge, Inbox};
-use crate::hub::command::{Command, Motion};
 use crate::hub::outbound::{CameraSettings, PageSettings, VoiceSettings};
 use crate::hub::{Channels, Hub};
 use crate::live::{self, Live};
@@ -82,10 +81,8 @@ impl Console {
         let wake_listener = client.bus().wake_listener(Service::Console).map_err(|error| {
             Failure::new(Exit::NotReached, format!("wake-ups of the console: {error}"))
         })?;
-        let (commands, command_inbox) =
-            worker_channel::channel::<Command>().map_err(failed("inbox"))?;
-        let (motions, motion_inbox) =
-            worker_channel::channel::<Motion>().map_err(failed("inbox"))?;
+        let (commands, command_inbox) = worker_channel::channel().map_err(failed("inbox"))?;
+        let (motions, motion_inbox) = worker_channel::channel().map_err(failed("inbox"))?;
         let (restarts, restart_inbox) = crossbeam_channel::bounded(RESTARTS_MAX);
         let study = page_study::open(settings, paths)?;
         let handover = Span::from_s(settings.console.handover.as_secs_f64());
@@ -128,9 +125,7 @@ impl Console {
 /// Why scenes are not changed from the page, if they are not.
 fn scenes_lock(settings: &Settings, has_study: bool) -> Option<String> {
     let why = match (has_study, settings.console.edit_scenes) {
-        (true, _) => {
-            "a study is enabled, and its scene is part of it; help: set study.enabled = false"
-        }
+        (true, _) => "the scene is part of a study; help: set study.enabled = false",
         (_, false) => "scenes are not edited here; help: set console.edit_scenes = true",
         _ => return None,
     };

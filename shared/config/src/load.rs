@@ -65,8 +65,8 @@ pub(crate) fn examine(
     let mut examined = check(tree, report, files, None);
     if let Some(settings) = &mut examined.settings {
         let (key, help) = (["console", "discovery"], "set console.listen = \"0.0.0.0:8377\"");
-        let unannounced = settings.console.unannounced();
-        warnings.extend(unannounced.map(|what| settings.diagnostic(&key, what, help)));
+        let warning = |what| settings.diagnostic(&key, what, help);
+        warnings.extend(settings.console.unannounced().map(warning));
         settings.resolved.warnings = warnings;
     }
     examined

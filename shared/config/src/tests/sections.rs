@@ -33,9 +33,8 @@ fn console_serves_other_machines_by_token_and_is_announced_to_them() {
     let settings = read("listen = '0.0.0.0:80'\ndiscovery = true");
     assert_eq!((settings.console.access, settings.warnings()), (Access::Token, &[][..]));
     let warned = read("discovery = true").warnings()[0].to_string();
-    const WHY: &str =
-        "console.toml:1:1: discovery: nothing is announced, as the console listens at";
-    assert!(warned.contains(&format!("{WHY} 127.0.0.1; help: set console.listen")), "{warned}");
+    let why = "discovery: nothing is announced, as the console listens at 127.0.0.1; help: set";
+    assert!(warned.contains(why), "{warned}");
     assert_eq!(read("discovery = false").warnings(), []);
 }
 
