@@ -90,6 +90,9 @@ recording_python() {
         jsonschema==4.26.0 foxglove-sdk==0.30.3 websockets==17.4 prometheus-client==0.26.0
 }
 
+# For the robot in its local network: another implementation of multicast DNS.
+zeroconf_python() { python_with zeroconf zeroconf==0.154.0 ifaddr==0.2.0; }
+
 # For simulated servos: the maker's library.
 servos_python() { python_with servos feetech-servo-sdk==1.0.0 pyserial==3.5; }
 
@@ -190,8 +193,12 @@ prepare_tests() {
     WHICHONE_RECORDING_PYTHON=$(recording_python) ||
         without "recordings, metrics and schemas by other readers (no mcap and websockets for python3)" \
             recorded_dialogue_is_read live_view_ metrics_are_read_by_ schemas_accept_
+    WHICHONE_ZEROCONF=$(zeroconf_python) && ((EUID == 0)) && [[ -c /dev/net/tun && -z $(install iproute2) ]] ||
+        without "discovery by another machine (no root, /dev/net/tun, iproute2 or zeroconf for python3)" \
+            found_from_another_machine
     local name
-    for name in WHICHONE_PYTHON WHICHONE_CYCLONE WHICHONE_SERVOS WHICHONE_PHYSICS WHICHONE_RECORDING_PYTHON; do
+    for name in WHICHONE_PYTHON WHICHONE_CYCLONE WHICHONE_SERVOS WHICHONE_PHYSICS WHICHONE_RECORDING_PYTHON \
+        WHICHONE_ZEROCONF; do
         if [[ -n ${!name} ]]; then export "${name?}"; else unset "$name"; fi
     done
 }

@@ -31,12 +31,13 @@ const EXCEPTIONS: [(&str, &str, &str); 1] =
     [("option-ext", "MPL-2.0", "dirs of zenoh brings it, unchanged; the default build lacks it")];
 
 /// Crates of which two versions are built, and who brings the older one.
-const DUPLICATES: [(&str, &str); 24] = [
+const DUPLICATES: [(&str, &str); 25] = [
     ("base64", "axum's web sockets; ureq has the newer one"),
     ("cpufeatures", "sha1 of axum's web sockets"),
     ("darling", "enumset of iceoryx2; beside it zenoh's serde_with"),
     ("darling_core", "darling of enumset"),
     ("darling_macro", "darling of enumset"),
+    ("flume", "zenoh; mdns-sd has the newer one"),
     ("foldhash", "hashbrown of zenoh's petgraph"),
     ("getrandom", "rand of axum's web sockets"),
     ("hashbrown", "zenoh"),

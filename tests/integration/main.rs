@@ -15,6 +15,7 @@ mod console_study;
 mod console_voice;
 mod dashboard;
 mod dialogues;
+mod discovery;
 mod documents;
 mod export;
 mod fair_share;

@@ -133,6 +133,8 @@ fn laboratory_is_at_the_rim() {
     for part in ["page_study", "page_history", "page_scenes", "group_metrics", "http_api"] {
         assert_eq!(dependents(part), with_page, "{part}");
     }
+    let with_interface = with_page.into_iter().chain(["http_api".to_owned()]);
+    assert_eq!(dependents("discovery"), with_interface.collect());
 }
 
 /// What a program from outside is built on has neither configuration nor journal, and no shell of a service.

@@ -1,5 +1,5 @@
 //! Two machines with a slow network between them, all on this one: two network namespaces, whose only way to each other
-//! is a pair of TUN devices, and a relay that carries each packet late, loses some, and has a bounded rate.
+//! is a pair of devices, and a relay that carries each packet late, loses some, and has a bounded rate.
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::ioctl::{Setter, ioctl};
@@ -35,6 +35,15 @@ pub struct Conditions {
     pub queue: usize,
 }
 
+/// Kind of the machines' devices, as flags of TUNSETIFF: without a header before each packet.
+#[derive(Clone, Copy, Debug)]
+enum Device {
+    /// Carries IP packets between two ends.
+    Tun = 0x1001,
+    /// Carries Ethernet frames, as of a house's network.
+    Tap = 0x1002,
+}
+
 /// One of the two machines.
 #[derive(Debug)]
 pub struct Machine {
@@ -65,13 +74,13 @@ struct State {
 
 impl Machine {
     /// Makes a machine with one device; returns it with the device.
-    fn new(address: &'static str) -> (Self, File) {
+    fn new(address: &'static str, kind: Device) -> (Self, File) {
         let make = move || {
             // SAFETY: only the network of this thread is another one; descriptors and memory stay shared.
             #[allow(unsafe_code)]
             unsafe { rustix::thread::unshare_unsafe(UnshareFlags::NEWNET) }.expect("a namespace");
             let namespace = File::open("/proc/thread-self/ns/net").expect("the namespace");
-            let device = device();
+            let device = device(kind);
             let with_mask = format!("{address}/24");
             let mtu = PACKET_MAX.to_string();
             ip(&["link", "set", "lo", "up"]);
@@ -98,7 +107,11 @@ impl Machine {
     }
 }
 
-fn ip(arguments: &[&str]) {
+/// Runs `ip` in this thread's network.
+///
+/// # Panics
+/// If it fails.
+pub fn ip(arguments: &[&str]) {
     let ended = Command::new("ip").args(arguments).output().expect("ip, of the package iproute2");
     assert!(ended.status.success(), "ip {arguments:?}: {ended:?}");
 }
@@ -111,17 +124,16 @@ struct Wanted {
     rest: [u8; 22],
 }
 
-/// Makes the TUN device `wo0` in this thread's network; each read and write is one IP packet.
-fn device() -> File {
+/// Makes the device `wo0` in this thread's network; each read and write is one packet.
+fn device(kind: Device) -> File {
     const TUNSETIFF: u32 = 0x4004_54ca;
-    const TUN_WITHOUT_HEADER: i16 = 0x1001;
     let tun = OpenOptions::new().read(true).write(true).open("/dev/net/tun").expect("/dev/net/tun");
     let mut name = [0; 16];
     name[..3].copy_from_slice(b"wo0");
-    let wanted = Wanted { name, flags: TUN_WITHOUT_HEADER, rest: [0; 22] };
+    let wanted = Wanted { name, flags: kind as i16, rest: [0; 22] };
     // SAFETY: TUNSETIFF reads a `struct ifreq`, whose layout and size `Wanted` has.
     #[allow(unsafe_code)]
-    unsafe { ioctl(&tun, Setter::<TUNSETIFF, Wanted>::new(wanted)) }.expect("a TUN device");
+    unsafe { ioctl(&tun, Setter::<TUNSETIFF, Wanted>::new(wanted)) }.expect("a device");
     tun
 }
 
@@ -131,8 +143,19 @@ impl Network {
     /// # Panics
     /// Without root or without TUN devices.
     pub fn new(conditions: Conditions) -> Self {
-        let (robot, robots) = Machine::new("10.77.0.2");
-        let (operator, operators) = Machine::new("10.77.0.1");
+        Self::of(Device::Tun, conditions)
+    }
+
+    /// As [`Network::new`], with Ethernet between them, without delay and loss: multicast reaches the other machine.
+    pub fn ethernet() -> Self {
+        let conditions =
+            Conditions { delay: Duration::ZERO, loss: 0.0, rate: 100_000_000, queue: 1 << 20 };
+        Self::of(Device::Tap, conditions)
+    }
+
+    fn of(kind: Device, conditions: Conditions) -> Self {
+        let (robot, robots) = Machine::new("10.77.0.2", kind);
+        let (operator, operators) = Machine::new("10.77.0.1", kind);
         let state = Arc::new(State {
             conditions: Mutex::new(conditions),
             is_cut: AtomicBool::new(false),
@@ -159,7 +182,7 @@ impl Network {
         self.state.is_cut.store(false, Ordering::Relaxed);
     }
 
-    /// Bytes that the robot and the operator have sent so far, headers of IP included.
+    /// Bytes that the robot and the operator have sent so far, headers included.
     pub fn sent(&self) -> [u64; 2] {
         [0, 1].map(|side| self.state.sent[side].load(Ordering::Relaxed))
     }

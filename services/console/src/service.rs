@@ -1,6 +1,5 @@
 //! The console's program: sets up bridge and web server, and drives both.
 
-use std::net::SocketAddr;
 use std::ops::ControlFlow;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -8,7 +7,7 @@ use std::time::Instant;
 
 use config::{Recogniser, Settings, Voice};
 use group_metrics::Metrics;
-use http_api::{Api, Feed, Rules};
+use http_api::Rules;
 use messages::Service;
 use page_history::History;
 use page_scenes::{Desk, Scenes};
@@ -25,7 +24,6 @@ use service::worker_channel;
 use service::{Span, Time};
 
 use crate::bridge::{self, Bridge, Inbox};
-use crate::hub::command::{Command, Motion};
 use crate::hub::outbound::{CameraSettings, PageSettings, VoiceSettings};
 use crate::hub::{Channels, Hub};
 use crate::live::{self, Live};
@@ -83,10 +81,8 @@ impl Console {
         let wake_listener = client.bus().wake_listener(Service::Console).map_err(|error| {
             Failure::new(Exit::NotReached, format!("wake-ups of the console: {error}"))
         })?;
-        let (commands, command_inbox) =
-            worker_channel::channel::<Command>().map_err(failed("inbox"))?;
-        let (motions, motion_inbox) =
-            worker_channel::channel::<Motion>().map_err(failed("inbox"))?;
+        let (commands, command_inbox) = worker_channel::channel().map_err(failed("inbox"))?;
+        let (motions, motion_inbox) = worker_channel::channel().map_err(failed("inbox"))?;
         let (restarts, restart_inbox) = crossbeam_channel::bounded(RESTARTS_MAX);
         let study = page_study::open(settings, paths)?;
         let handover = Span::from_s(settings.console.handover.as_secs_f64());
@@ -100,7 +96,9 @@ impl Console {
         let session = random_secret().map_err(failed("session"))?;
         let access = Arc::new(access(settings, paths)?);
         let hub = Hub::new(channels, limits.viewers, handover, Metrics::new(paths.recordings()));
-        let (http, feed) = http(&access, &hub, paths).map_err(failed("interface for programs"))?;
+        let rules = rules(&access, &hub, settings.console.discovery);
+        let (http, feed) =
+            http_api::open(paths, rules).map_err(failed("interface for programs"))?;
         let app = Arc::new(App {
             history,
             scenes,
@@ -116,8 +114,7 @@ impl Console {
         });
         bridge::supervisor::watch(paths, &app, restart_inbox, commands)
             .map_err(failed("supervisor's thread"))?;
-        let address: SocketAddr = settings.console.listen;
-        let web = Web::new(&app, address, paths.console_url(), limits.others)
+        let web = Web::new(&app, settings.console.listen, paths.console_url(), limits.others)
             .map_err(failed("web server's threads"))?;
         let bridge = Bridge::open(Arc::clone(&app), client, paths, settings, (study, feed))?;
         let inbox = Inbox { commands: command_inbox, motions: motion_inbox };
@@ -128,9 +125,7 @@ impl Console {
 /// Why scenes are not changed from the page, if they are not.
 fn scenes_lock(settings: &Settings, has_study: bool) -> Option<String> {
     let why = match (has_study, settings.console.edit_scenes) {
-        (true, _) => {
-            "a study is enabled, and its scene is part of it; help: set study.enabled = false"
-        }
+        (true, _) => "the scene is part of a study; help: set study.enabled = false",
         (_, false) => "scenes are not edited here; help: set console.edit_scenes = true",
         _ => return None,
     };
@@ -147,12 +142,11 @@ fn access(settings: &Settings, paths: &GroupPaths) -> Result<Access, Failure> {
     Access::by_token(&file, console_link::sessions_file(paths)).map_err(failed)
 }
 
-/// Opens the interface for programs, which the console's own token may use as well.
-fn http(access: &Arc<Access>, hub: &Hub, paths: &GroupPaths) -> std::io::Result<(Arc<Api>, Feed)> {
+/// Rules of the interface for programs, which the console's own token may use as well.
+fn rules(access: &Arc<Access>, hub: &Hub, discovery: bool) -> Rules {
     let access = Arc::clone(access);
     let is_owner = Box::new(move |said: &str| access.is_token(said));
-    let (is_stop, ending) = (language::is_stop, hub.ending());
-    http_api::open(paths, Rules { is_owner, is_stop, ending })
+    Rules { is_owner, is_stop: language::is_stop, ending: hub.ending(), discovery }
 }
 
 /// Raises the limit of descriptors as far as allowed, and divides it: first to pages, then to the

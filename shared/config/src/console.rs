@@ -24,6 +24,8 @@ pub struct Console {
     pub access: Access,
     /// Maximum number of open pages; one place is reserved for an operator.
     pub viewers_max: usize,
+    /// Announce the console in the local network, unless `listen` accepts this machine alone.
+    pub discovery: bool,
     /// Time after which a request for control is granted if the operator does not answer.
     pub handover: Duration,
     /// Language of the page, e.g. `en`.
@@ -58,11 +60,20 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Console {
         listen,
         access,
         viewers_max: usize::from(f.whole::<u16>("viewers_max", 2..=200)),
+        discovery: f.flag("discovery"),
         handover: f.seconds("handover_s", 1.0..=300.0),
         language: language(f),
         foxglove_origins: foxglove_origins(f),
         edit_scenes: f.flag("edit_scenes"),
         camera: camera(f),
+    }
+}
+
+impl Console {
+    /// Returns why `discovery` has no effect, if it has none.
+    pub(crate) fn unannounced(&self) -> Option<String> {
+        let (ip, what) = (self.listen.ip(), "nothing is announced, as the console listens at");
+        (self.discovery && ip.is_loopback()).then(|| format!("{what} {ip}"))
     }
 }
 
@@ -83,11 +94,8 @@ fn foxglove_origins(f: &mut Fields<'_>) -> Vec<String> {
         });
         if !is_origin {
             let what = format!("`{origin}` is not the origin of a page");
-            f.problem(
-                "foxglove_origins",
-                what,
-                "write scheme, host and port, e.g. \"https://app.foxglove.dev\"",
-            );
+            const HELP: &str = "write scheme, host and port, e.g. \"https://app.foxglove.dev\"";
+            f.problem("foxglove_origins", what, HELP);
         }
     }
     origins
@@ -104,11 +112,8 @@ fn camera(f: &mut Fields<'_>) -> Option<Camera> {
     match origin(&url) {
         Ok(origin) => Some(Camera { url, origin, every: (!every.is_zero()).then_some(every) }),
         Err(why) => {
-            f.problem(
-                "camera",
-                format!("`{url}`: {why}"),
-                "write e.g. \"http://camera:8080/stream\"",
-            );
+            let what = format!("`{url}`: {why}");
+            f.problem("camera", what, "write e.g. \"http://camera:8080/stream\"");
             None
         }
     }

@@ -174,7 +174,7 @@ impl Settings {
         self.speech.voice_dir.clone().or(own)
     }
 
-    /// Keys of earlier versions in the configuration folder, with their replacements.
+    /// Keys of earlier versions, with their replacements, and values without effect.
     pub fn warnings(&self) -> &[Diagnostic] {
         &self.resolved.warnings
     }

@@ -64,6 +64,9 @@ pub(crate) fn examine(
     let files = Files::find(dir, &tree, scene, &mut report);
     let mut examined = check(tree, report, files, None);
     if let Some(settings) = &mut examined.settings {
+        let (key, help) = (["console", "discovery"], "set console.listen = \"0.0.0.0:8377\"");
+        let warning = |what| settings.diagnostic(&key, what, help);
+        warnings.extend(settings.console.unannounced().map(warning));
         settings.resolved.warnings = warnings;
     }
     examined

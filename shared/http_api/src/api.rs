@@ -3,9 +3,11 @@
 use std::collections::BTreeSet;
 use std::fmt;
 use std::io;
+use std::net::SocketAddr;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use axum::http::{HeaderMap, HeaderName};
+use discovery::{Announcement, Identity};
 use roster::Name;
 use safe_files::{read_private, replace_private_synced};
 use serde::Serialize;
@@ -28,6 +30,10 @@ use crate::problem::Problem;
 use crate::tokens::{OWNER, Right, Token, TokenFile, Tokens, tokens_file};
 use crate::uses::{UseFile, uses_file};
 
+/// Version of the interface.
+const API: u64 = 1;
+/// Where it begins below the server's address.
+pub(crate) const PATH: &str = "/api/v1";
 /// Name of the audit in the group's folder, without ending.
 pub(crate) const AUDIT: &str = "http-audit";
 /// The person for whom a gateway asks, which has the console's own token.
@@ -47,6 +53,8 @@ pub struct Rules {
     pub is_stop: fn(&str) -> bool,
     /// True once the server is to end.
     pub ending: watch::Receiver<bool>,
+    /// Whether the robot is announced in the local network.
+    pub discovery: bool,
 }
 
 impl fmt::Debug for Rules {
@@ -58,9 +66,7 @@ impl fmt::Debug for Rules {
 /// The server's half.
 #[derive(Debug)]
 pub struct Api {
-    pub(crate) group: String,
-    /// Unlike the name, no other group has it.
-    pub(crate) id: String,
+    pub(crate) identity: Identity,
     pub(crate) rules: Rules,
     pub(crate) events: Arc<Events>,
     pub(crate) motion: Motion,
@@ -72,6 +78,7 @@ pub struct Api {
     uses: UseFile,
     audit: Audit,
     guesses: Places,
+    announcement: Mutex<Option<Announcement>>,
 }
 
 /// Who makes a request.
@@ -104,8 +111,12 @@ pub fn open(paths: &GroupPaths, rules: Rules) -> io::Result<(Arc<Api>, Feed)> {
     let (requests, inbox) = worker_channel::channel()?;
     let events = Arc::new(Events::open(&paths.run()));
     let api = Api {
-        group: paths.name().to_string(),
-        id: own_id(paths)?,
+        identity: Identity {
+            api: API,
+            id: own_id(paths)?,
+            name: paths.name().to_string(),
+            version: build_info::VERSION,
+        },
         motion: Motion::new(paths.clone(), rules.ending.clone()),
         rules,
         events: Arc::clone(&events),
@@ -117,6 +128,7 @@ pub fn open(paths: &GroupPaths, rules: Rules) -> io::Result<(Arc<Api>, Feed)> {
         uses: UseFile::open(uses_file(paths)),
         audit: Audit::open(paths.root(), AUDIT)?,
         guesses: Places::new(GUESSES_MAX, GUESSES_MAX),
+        announcement: Mutex::default(),
     };
     Ok((Arc::new(api), Feed::new(inbox, events)))
 }
@@ -134,6 +146,26 @@ fn own_id(paths: &GroupPaths) -> io::Result<String> {
 }
 
 impl Api {
+    /// Announces the robot in its local network if that is wanted. The server listens at this address.
+    pub fn announce(&self, listening: SocketAddr) {
+        if !self.rules.discovery {
+            return;
+        }
+        match Announcement::begin(&self.identity, listening, PATH) {
+            Ok(announcement) => *self.announcement() = Some(announcement),
+            Err(error) => tracing::warn!("the robot is not announced: {error}"),
+        }
+    }
+
+    /// Withdraws the announcement, so that others do not look for the robot.
+    pub fn withdraw(&self) {
+        *self.announcement() = None;
+    }
+
+    fn announcement(&self) -> MutexGuard<'_, Option<Announcement>> {
+        self.announcement.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     /// Returns who makes a request, whose connection is proven then.
     pub(crate) async fn caller(
         &self,

@@ -11,6 +11,7 @@
 //! | addresses, who may use them, the audit | `routes.rs`, `api.rs` |
 //! | words under a key, replies, whose dialogue it is | `say.rs`, `feed.rs`, `conversations.rs` |
 //! | the state and its events | `state.rs`, `events.rs`, `stream.rs` |
+//! | the announcement in the local network | `api.rs`, crate `discovery` |
 //! | the motion stop | `motion.rs` |
 //! | refusals, limits | `problem.rs`, `limits.rs` |
 //! | the description that is served and tested | `openapi.json` |

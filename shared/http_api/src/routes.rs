@@ -8,19 +8,17 @@ use axum::extract::{ConnectInfo, State};
 use axum::http::{HeaderMap, header};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
+use discovery::Identity;
 use serde::Serialize;
-use serde_json::json;
 use web_server::connections::Of;
 
-use crate::api::{Api, Caller};
+use crate::api::{Api, Caller, PATH};
 use crate::problem::Problem;
 use crate::state::Word;
 use crate::tokens::Right;
 use crate::{say, stream};
 
-/// Version of the interface.
-const API: u64 = 1;
-/// Its description.
+/// Description of the interface.
 const OPENAPI: &str = include_str!("openapi.json");
 
 type Shared = State<Arc<Api>>;
@@ -41,15 +39,20 @@ pub fn routes<S: Clone + Send + Sync + 'static>(api: Arc<Api>) -> Router<S> {
         .fallback(|| async { Problem::not_found() })
         .method_not_allowed_fallback(|| async { Problem::method() })
         .with_state(api);
-    Router::new().nest("/api/v1", routes)
+    Router::new().nest(PATH, routes)
+}
+
+/// The identity, and whether the robot can be talked with.
+#[derive(Serialize)]
+struct Info<'a> {
+    #[serde(flatten)]
+    identity: &'a Identity,
+    online: bool,
 }
 
 async fn info(State(api): Shared) -> Response {
-    let is_online = api.events.state().state != Word::Disconnected;
-    let version = build_info::VERSION;
-    as_json(&json!({
-        "api": API, "id": api.id, "name": api.group, "version": version, "online": is_online,
-    }))
+    let online = api.events.state().state != Word::Disconnected;
+    as_json(&Info { identity: &api.identity, online })
 }
 
 async fn openapi() -> Response {

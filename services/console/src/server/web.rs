@@ -107,6 +107,7 @@ impl Web {
         if let Err(error) = safe_files::replace_private(&self.url_file, format!("{url}\n")) {
             tracing::warn!(%error, "the page's address is not written");
         }
+        self.app.http.announce(address);
         let app = Arc::clone(&self.app);
         let gate = Gate::new(listener, self.others_max, Pages::Apart);
         if let Some(runtime) = &self.runtime {
@@ -121,6 +122,7 @@ impl Web {
 
     pub fn shut_down(&mut self) {
         let Some(runtime) = self.runtime.take() else { return };
+        self.app.http.withdraw();
         self.app.hub.end();
         let until = Instant::now() + CLOSE;
         while self.app.hub.viewers() > 0 && Instant::now() < until {

@@ -28,10 +28,14 @@ fn console_camera_is_a_stream_or_single_pictures_of_one_origin() {
 }
 
 #[test]
-fn console_serves_other_machines_by_token() {
-    let settings =
-        Folder::new(&[("console.toml", "listen = '0.0.0.0:80'")]).load(None, &[]).unwrap();
-    assert_eq!(settings.console.access, Access::Token);
+fn console_serves_other_machines_by_token_and_is_announced_to_them() {
+    let read = |text| Folder::new(&[("console.toml", text)]).load(None, &[]).unwrap();
+    let settings = read("listen = '0.0.0.0:80'\ndiscovery = true");
+    assert_eq!((settings.console.access, settings.warnings()), (Access::Token, &[][..]));
+    let warned = read("discovery = true").warnings()[0].to_string();
+    let why = "discovery: nothing is announced, as the console listens at 127.0.0.1; help: set";
+    assert!(warned.contains(why), "{warned}");
+    assert_eq!(read("discovery = false").warnings(), []);
 }
 
 #[test]

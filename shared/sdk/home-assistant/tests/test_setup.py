@@ -5,13 +5,13 @@ from ipaddress import ip_address
 from pathlib import Path
 
 import pytest
-from homeassistant.config_entries import SOURCE_USER, SOURCE_ZEROCONF, ConfigEntryState
+from homeassistant.config_entries import SOURCE_IGNORE, SOURCE_USER, SOURCE_ZEROCONF, ConfigEntryState
 from homeassistant.data_entry_flow import FlowResultType
 from homeassistant.helpers.service_info.zeroconf import ZeroconfServiceInfo
 from pytest_homeassistant_custom_component.common import MockConfigEntry
 
 from conftest import connected, until
-from custom_components.whichone.config_flow import robot_url
+from custom_components.whichone.config_flow import announced_url, robot_url
 from custom_components.whichone.const import CONF_NAME_PEOPLE
 from fake_robot import ID, TOKEN, Fake
 from talk import say, spoken
@@ -66,7 +66,7 @@ def announced(port, **changed):
         hostname="robot.local.",
         type="_whichone._tcp.local.",
         name="robot._whichone._tcp.local.",
-        properties={"api": "1", "id": ID, "name": "kitchen"} | changed,
+        properties={"api": "1", "id": ID, "name": "kitchen", "scheme": "http", "path": "/api/v1"} | changed,
     )
 
 
@@ -75,17 +75,77 @@ async def find(hass, found):
     return await hass.config_entries.flow.async_init("whichone", context={"source": SOURCE_ZEROCONF}, data=found)
 
 
+async def answer(hass, flow, **fields):
+    """Fill in a form of other fields."""
+    return await hass.config_entries.flow.async_configure(flow["flow_id"], fields)
+
+
 async def test_robot_that_is_found_is_set_up_with_its_token(core, fake):
-    assert (await find(core, announced(fake.port, api="2")))["reason"] == "api_version"
     flow = await find(core, announced(fake.port))
-    assert flow["data_schema"]({"token": TOKEN})["url"] == fake.url
-    done = await fill(core, flow, fake.url, TOKEN)
+    assert flow["description_placeholders"] == {"name": "kitchen", "url": fake.url}
+    assert [str(field) for field in flow["data_schema"].schema] == ["token"]
+    flow = await answer(core, flow, token="wrong")
+    assert flow["errors"] == {"token": "invalid_token"}
+    assert (await find(core, announced(fake.port)))["reason"] == "already_in_progress"
+    done = await answer(core, flow, token=TOKEN)
     assert done["type"] is FlowResultType.CREATE_ENTRY
+    assert done["data"] == {"url": fake.url, "token": TOKEN}
+    assert done["result"].unique_id == ID
     await core.async_block_till_done()
-    # Who announces a known name elsewhere does not get the token.
-    assert (await find(core, announced(1)))["reason"] == "already_configured"
-    assert done["result"].data["url"] == fake.url
+    assert (await find(core, announced(fake.port)))["reason"] == "already_configured"
     await core.config_entries.async_unload(done["result"].entry_id)
+
+
+@pytest.mark.parametrize(
+    ("changed", "reason"),
+    [
+        ({"api": "2"}, "api_version"),
+        ({"id": ""}, "invalid_announcement"),
+        ({"scheme": "ftp"}, "invalid_announcement"),
+        ({"path": "elsewhere"}, "invalid_announcement"),
+    ],
+)
+async def test_announcement_of_something_else_is_not_offered(core, changed, reason):
+    assert (await find(core, announced(8377, **changed)))["reason"] == reason
+
+
+async def test_robot_that_has_moved_is_followed_once_its_owner_agrees(core, fake, entry):
+    moved = Fake()
+    await moved.start()
+    # Who announces a robot that still answers does not get its token.
+    assert (await find(core, announced(moved.port)))["reason"] == "already_configured"
+    await fake.end()
+    flow = await find(core, announced(moved.port))
+    assert (flow["step_id"], flow["data_schema"].schema) == ("moved", {})
+    assert flow["description_placeholders"] == {"name": "robot", "url": moved.url, "former": fake.url}
+    assert (entry.data["url"], moved.asked) == (fake.url, [])
+    moved.answers["state"] = "right"
+    flow = await answer(core, flow)
+    assert flow["errors"] == {"base": "missing_right"}
+    moved.answers["state"] = "state_idle"
+    done = await answer(core, flow)
+    assert done["reason"] == "reconfigure_successful"
+    await core.async_block_till_done()
+    assert entry.data == {"url": moved.url, "token": TOKEN}
+    await until(lambda: moved.resumed_after)
+    await core.config_entries.async_unload(entry.entry_id)
+    await moved.end()
+
+
+async def test_another_robot_at_the_announced_address_is_not_followed(core, fake, entry):
+    other = Fake()
+    other.info = {"id": "another"}
+    await other.start()
+    await fake.end()
+    flow = await find(core, announced(other.port))
+    assert (await answer(core, flow))["reason"] == "other_robot"
+    assert entry.data["url"] == fake.url
+    await other.end()
+
+
+async def test_robot_that_is_ignored_stays_ignored(core, fake):
+    MockConfigEntry(domain="whichone", unique_id=ID, source=SOURCE_IGNORE, data={}).add_to_hass(core)
+    assert (await find(core, announced(fake.port)))["reason"] == "already_configured"
 
 
 async def test_refused_token_asks_for_another_one(core, fake, entry):
@@ -172,6 +232,18 @@ async def test_robot_that_is_not_this_one_is_not_set_up(core, fake, token, info,
 )
 def test_addresses(text, url):
     assert robot_url(text) == url
+
+
+@pytest.mark.parametrize(
+    ("changed", "url"),
+    [
+        ({}, "http://127.0.0.1:8377"),
+        ({"scheme": None, "path": None}, "http://127.0.0.1:8377"),
+        ({"scheme": "https", "path": "/ann/api/v1"}, "https://robot.local:8377/ann"),
+    ],
+)
+def test_announced_addresses(changed, url):
+    assert announced_url(announced(8377, **changed)) == url
 
 
 def keys(value, path=""):

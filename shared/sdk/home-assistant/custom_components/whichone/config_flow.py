@@ -19,7 +19,7 @@ from homeassistant.helpers.selector import (
 from homeassistant.helpers.service_info.zeroconf import ZeroconfServiceInfo
 from yarl import URL
 
-from .api import CannotConnect, InvalidToken, Problem, Robot
+from .api import CannotConnect, InvalidToken, Problem, Robot, RobotError
 from .const import API, CONF_NAME_PEOPLE, DOMAIN
 
 _PLAIN = TextSelector(TextSelectorConfig(type=TextSelectorType.URL))
@@ -35,6 +35,7 @@ class WhichoneFlow(ConfigFlow, domain=DOMAIN):
     def __init__(self) -> None:
         """Begin with nothing found."""
         self._url = ""
+        self._moved: ConfigEntry | None = None
 
     @staticmethod
     @callback
@@ -55,15 +56,46 @@ class WhichoneFlow(ConfigFlow, domain=DOMAIN):
 
     async def async_step_zeroconf(self, discovery_info: ZeroconfServiceInfo) -> ConfigFlowResult:
         """Take the address of a robot that announces itself."""
-        found = discovery_info.properties
-        if found.get("api") != str(API) or not found.get("id"):
+        found, url = discovery_info.properties, announced_url(discovery_info)
+        if not found.get("id") or url is None:
+            return self.async_abort(reason="invalid_announcement")
+        if found.get("api") != str(API):
             return self.async_abort(reason="api_version")
-        self._url = str(URL.build(scheme="http", host=discovery_info.host, port=discovery_info.port))
-        await self.async_set_unique_id(found["id"])
-        # A known robot keeps its address: anyone in the network can announce its name, and would get the token.
+        self._url = url
+        entry = await self.async_set_unique_id(found["id"])
+        self.context["title_placeholders"] = {"name": entry.title if entry else found.get("name") or "whichone"}
+        if entry and await self._is_gone(entry):
+            self._moved = entry
+            return await self.async_step_moved()
         self._abort_if_unique_id_configured()
-        self.context["title_placeholders"] = {"name": found.get("name") or "whichone"}
-        return await self.async_step_user()
+        return await self.async_step_zeroconf_confirm()
+
+    async def async_step_zeroconf_confirm(self, user_input: dict[str, Any] | None = None) -> ConfigFlowResult:
+        """Set up a robot that was found, with its token."""
+        errors: dict[str, str] = {}
+        if user_input is not None:
+            data, info, errors = await self._try({CONF_URL: self._url, **user_input})
+            if not errors:
+                await self.async_set_unique_id(info["id"], raise_on_progress=False)
+                self._abort_if_unique_id_configured()
+                return self.async_create_entry(title=info["name"], data=data)
+        return self._ask("zeroconf_confirm", _TOKEN, errors, url=self._url)
+
+    async def async_step_moved(self, user_input: dict[str, Any] | None = None) -> ConfigFlowResult:
+        """Change the address of a robot that is announced at another one, if its owner agrees.
+
+        It is not changed without being asked: anyone in the network can announce the robot, and would get the token.
+        """
+        entry, errors = self._moved, {}
+        if user_input is not None:
+            data, info, errors = await self._try({**entry.data, CONF_URL: self._url})
+            if not errors and info["id"] != entry.unique_id:
+                return self.async_abort(reason="other_robot")
+            if not errors:
+                return self.async_update_reload_and_abort(entry, data_updates=data, reason="reconfigure_successful")
+        # A form without fields shows an error only as a whole.
+        errors = dict(zip(["base"], errors.values(), strict=False))
+        return self._ask("moved", {}, errors, url=self._url, former=entry.data[CONF_URL])
 
     async def async_step_reconfigure(self, user_input: dict[str, Any] | None = None) -> ConfigFlowResult:
         """Change the address or the token of a robot."""
@@ -89,15 +121,31 @@ class WhichoneFlow(ConfigFlow, domain=DOMAIN):
                 await self.async_set_unique_id(info["id"])
                 self._abort_if_unique_id_mismatch(reason="other_robot")
                 return self.async_update_reload_and_abort(entry, data_updates=data)
-        names = {"name": entry.title}
-        return self.async_show_form(
-            step_id="reauth_confirm", errors=errors, data_schema=vol.Schema(_TOKEN), description_placeholders=names
-        )
+        return self._ask("reauth_confirm", _TOKEN, errors)
 
     def _form(self, step: str, given: dict[str, Any] | None, errors: dict[str, str]) -> ConfigFlowResult:
         url = (given or {}).get(CONF_URL) or self._url
         fields = {vol.Required(CONF_URL, default=url or vol.UNDEFINED): _PLAIN} | _TOKEN
         return self.async_show_form(step_id=step, errors=errors, data_schema=vol.Schema(fields))
+
+    def _ask(self, step: str, fields: dict[Any, Any], errors: dict[str, str], **placeholders: str) -> ConfigFlowResult:
+        """Show a form whose text names the robot."""
+        names = {**self.context["title_placeholders"], **placeholders}
+        return self.async_show_form(
+            step_id=step, errors=errors, data_schema=vol.Schema(fields), description_placeholders=names
+        )
+
+    async def _is_gone(self, entry: ConfigEntry) -> bool:
+        """Return whether a robot that is set up does not answer at its address, which is not the found one."""
+        url = entry.data.get(CONF_URL, self._url)
+        if url == self._url:
+            return False
+        try:
+            # Identities are public: whoever has the address now does not get the token.
+            info = await Robot(async_get_clientsession(self.hass), url, "").info()
+        except RobotError:
+            return True
+        return info.get("id") != entry.unique_id
 
     async def _try(self, given: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Any], dict[str, str]]:
         """Return what is to be stored, which robot it is, and what is wrong with it."""
@@ -130,6 +178,17 @@ class WhichoneOptions(OptionsFlow):
         names = self.config_entry.options.get(CONF_NAME_PEOPLE, False)
         fields = {vol.Required(CONF_NAME_PEOPLE, default=names): BooleanSelector()}
         return self.async_show_form(step_id="init", data_schema=vol.Schema(fields))
+
+
+def announced_url(found: ZeroconfServiceInfo) -> str | None:
+    """Return the address in an announcement, `None` if there is none."""
+    scheme, path = (found.properties.get(key) or "" for key in ("scheme", "path"))
+    # Certificates are of names.
+    host = found.hostname.rstrip(".") if scheme == "https" else found.host
+    try:
+        return robot_url(str(URL.build(scheme=scheme or "http", host=host, port=found.port, path=path)))
+    except (TypeError, ValueError):
+        return None
 
 
 def robot_url(text: str) -> str | None:
