@@ -6,8 +6,8 @@ use command_line::Outcome;
 use command_line::interrupt::Interrupt;
 use command_line::output::{Ink, Output, note};
 use messages::{
-    GateVerdict, Hypothesis, MotionOrder, Receipt, ReceiptStatus, SecondState, Service, Sound,
-    Source, WireError,
+    GateVerdict, Hypothesis, Receipt, ReceiptStatus, SecondState, Service, Sound, Source,
+    WireError,
 };
 use serde::Serialize;
 use service::client::{Client, ClientError, submit};
@@ -45,7 +45,7 @@ pub(super) fn say(paths: &GroupPaths, args: &SayArgs, out: &mut Output<'_>) -> O
     // The stop needs no speech service: it goes to the arm at once, on its own path, and outlives the words.
     let interrupt = Interrupt::listen()?;
     let orders = MotionOrders::open(paths)?;
-    orders.give(MotionOrder::Stop);
+    orders.stop();
     orders.await_news(STOPS_WITHIN);
     let given = give_said(paths, &said, args.timeout, Some(&interrupt), out);
     orders.finish(&interrupt, Some(args.timeout), given)
