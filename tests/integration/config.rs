@@ -170,13 +170,19 @@ fn verbs_that_take_long_say_what_they_are_at_and_are_interrupted_at_once() {
     let place = ["scene", "place", scene.to_str().unwrap(), "--write", "--config", config];
     for words in [&check[..], &place[..]] {
         let mut terminal = Terminal::start_with(&mut whichone(words), (100, 20), |errors| errors);
+        let process = Pid::from_child(&terminal.child);
+        // A fast machine gets through in less than the second after which the line appears.
+        std::thread::sleep(Duration::from_millis(300));
+        kill_process(process, Signal::STOP).unwrap();
+        std::thread::sleep(Duration::from_millis(1_200));
+        kill_process(process, Signal::CONT).unwrap();
         let is_at = |lines: &[String]| {
             ["checking reach: ", "looking for a better place", "finding places: "]
                 .iter()
                 .any(|at| has(lines, at))
         };
         terminal.wait_for("the progress", is_at);
-        kill_process(Pid::from_child(&terminal.child), Signal::INT).unwrap();
+        kill_process(process, Signal::INT).unwrap();
         let began = Instant::now();
         let ended = wait_for("the end", 20.0, || terminal.child.try_wait().unwrap());
         assert_eq!(ended.signal(), Some(2), "{words:?}: {ended:?}");
