@@ -5,7 +5,7 @@ use crate::report::{Report, percentile};
 use messages::MotionOrder;
 use rustix::process::{Pid, Signal, kill_process};
 use service::clock;
-use service::stop_socket::{StopClient, StopState};
+use service::stop_socket::{StopClient, StopOrder, StopState};
 use std::time::{Duration, Instant};
 use whichone_tests::shortage::{
     BusyDisk, JointWatch, NoDescriptors, SmallDisk, SmallGroup, has_private_mounts,
@@ -128,7 +128,7 @@ fn add_answers(report: &mut Report, situation: &str, group: &Group) {
 /// Gives a stop and returns the milliseconds until it is answered.
 fn answer_ms(client: &StopClient) -> f64 {
     let (begun, given) = (Instant::now(), clock::now());
-    client.send(MotionOrder::Stop, given).expect("a running arm");
+    client.send(&StopOrder::new(MotionOrder::Stop, given)).expect("a running arm");
     let is_answer = |state: StopState| state.given_ns == given.ns();
     while !client.take().is_some_and(is_answer) {
         assert!(begun.elapsed() < Duration::from_secs(30), "no answer");

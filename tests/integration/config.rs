@@ -1,7 +1,12 @@
 //! An invalid configuration is refused as a whole, with every problem, its file and its key.
 
+use crate::dashboard::{Terminal, has};
+use rustix::process::{Pid, Signal, kill_process};
+use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
-use whichone_tests::Group;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+use whichone_tests::{Group, program, wait_for};
 
 fn shipped() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../config")
@@ -131,4 +136,73 @@ fn reload_adopts_valid_and_refuses_invalid_files() {
     assert_eq!(group.incarnation("arm"), arm, "unaffected services keep running");
     assert_eq!(group.fetch("the clear bowl", "clear")["object"], "clear");
     group.down();
+}
+
+/// A configuration whose bowls are all out of reach, so that a better place is searched for each: it takes seconds.
+fn out_of_reach() -> tempfile::TempDir {
+    edited("scenes/bowls.toml", |text| {
+        let mut y = -1.2;
+        let mut moved = |line: &str| {
+            if !line.starts_with("xyz = ") {
+                return format!("{line}\n");
+            }
+            y += 0.3;
+            format!("xyz = [1.6, {y:.1}, -0.13]\n")
+        };
+        text.lines().map(&mut moved).collect()
+    })
+}
+
+fn whichone(words: &[&str]) -> Command {
+    let mut command = Command::new(program("whichone"));
+    command.args(words);
+    command
+}
+
+/// The terminal shows what a verb is at, and a line that is erased at the end.
+#[test]
+fn verbs_that_take_long_say_what_they_are_at_and_are_interrupted_at_once() {
+    let folder = out_of_reach();
+    let config = folder.path().to_str().unwrap();
+    let scene = folder.path().join("scenes/bowls.toml");
+    let before = std::fs::read(&scene).unwrap();
+    let check = ["check", "--config", config];
+    let place = ["scene", "place", scene.to_str().unwrap(), "--write", "--config", config];
+    for words in [&check[..], &place[..]] {
+        let mut terminal = Terminal::start_with(&mut whichone(words), (100, 20), |errors| errors);
+        let process = Pid::from_child(&terminal.child);
+        // A fast machine gets through in less than the second after which the line appears.
+        std::thread::sleep(Duration::from_millis(300));
+        kill_process(process, Signal::STOP).unwrap();
+        std::thread::sleep(Duration::from_millis(1_200));
+        kill_process(process, Signal::CONT).unwrap();
+        let is_at = |lines: &[String]| {
+            ["checking reach: ", "looking for a better place", "finding places: "]
+                .iter()
+                .any(|at| has(lines, at))
+        };
+        terminal.wait_for("the progress", is_at);
+        kill_process(process, Signal::INT).unwrap();
+        let began = Instant::now();
+        let ended = wait_for("the end", 20.0, || terminal.child.try_wait().unwrap());
+        assert_eq!(ended.signal(), Some(2), "{words:?}: {ended:?}");
+        assert!(began.elapsed() < Duration::from_secs(1), "{words:?}: {:?}", began.elapsed());
+        terminal.wait_for("the erased line", |lines| !is_at(lines));
+    }
+    assert_eq!(std::fs::read(&scene).unwrap(), before);
+    let files = std::fs::read_dir(folder.path().join("scenes")).unwrap();
+    assert_eq!(files.count(), std::fs::read_dir(shipped().join("scenes")).unwrap().count());
+
+    // Whole, with the line gone; without a terminal or with --json there is none.
+    let mut terminal = Terminal::start_with(&mut whichone(&check), (100, 20), |errors| errors);
+    let ended = wait_for("the end", 60.0, || terminal.child.try_wait().unwrap());
+    assert_eq!(ended.code(), Some(78));
+    terminal.wait_for("the problems", |lines| has(lines, "6 problems") && !has(lines, "place of"));
+    let piped = whichone(&check).stderr(Stdio::piped()).output().unwrap();
+    assert!(!piped.stderr.contains(&0x1b), "{}", String::from_utf8_lossy(&piped.stderr));
+    let json = [&check[..], &["--json"]].concat();
+    let mut terminal = Terminal::start_with(&mut whichone(&json), (100, 20), |errors| errors);
+    wait_for("the end", 60.0, || terminal.child.try_wait().unwrap());
+    terminal.wait_for("the problems", |lines| has(lines, "\"ok\":false"));
+    assert!(!has(&terminal.lines(), "place of `"), "{:?}", terminal.lines());
 }

@@ -17,15 +17,24 @@ pub(crate) struct Terminal {
 }
 
 impl Terminal {
-    /// Starts a program in a terminal of that size.
+    /// Starts a program in a terminal of that size, which does not show its errors.
     pub(crate) fn start(command: &mut Command, columns: u16, rows: u16) -> Self {
+        Self::start_with(command, (columns, rows), |_| Stdio::piped())
+    }
+
+    /// Starts a program in a terminal of that size, which is its standard error as well if `errors` returns it.
+    pub(crate) fn start_with(
+        command: &mut Command,
+        (columns, rows): (u16, u16),
+        errors: impl FnOnce(Stdio) -> Stdio,
+    ) -> Self {
         let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap();
         grantpt(&master).unwrap();
         unlockpt(&master).unwrap();
         resize(&master, columns, rows);
         let name = ptsname(&master, Vec::new()).unwrap();
         let end = || open(&name, OFlags::RDWR | OFlags::NOCTTY, rustix::fs::Mode::empty()).unwrap();
-        command.stdin(end()).stdout(end()).stderr(Stdio::piped()).env_remove("NO_COLOR");
+        command.stdin(end()).stdout(end()).stderr(errors(end().into())).env_remove("NO_COLOR");
         let child = command.spawn().unwrap();
         let master = File::from(master);
         let screen = Arc::new(Mutex::new(Screen::default()));
@@ -68,7 +77,8 @@ fn resize(terminal: impl std::os::fd::AsFd, columns: u16, rows: u16) {
     tcsetwinsize(terminal, size).unwrap();
 }
 
-/// What a terminal shows: text, moves of the cursor, erasing of the whole; the rest is left out.
+/// What a terminal shows: text, moves of the cursor, erasing of the whole and of a line's end; the rest is left
+/// out.
 #[derive(Default)]
 struct Screen {
     cells: Vec<Vec<char>>,
@@ -111,6 +121,10 @@ impl Screen {
                 self.at = (row - 1, column - 1);
             }
             b'J' if parameters == "2" => self.cells.clear(),
+            b'K' => {
+                let (row, column) = self.at;
+                self.cells.iter_mut().skip(row).take(1).for_each(|cells| cells.truncate(column));
+            }
             _ => {}
         }
     }

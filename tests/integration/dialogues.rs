@@ -103,3 +103,45 @@ fn paper_language_delivers() {
     assert_delivered(&group.fetch("the white one", "white3"), "white3", 3);
     group.down();
 }
+
+/// Says the words, and returns the number of the question that follows, a later one than `before`.
+pub(crate) fn asked_by_line(group: &Group, words: &str, before: u64) -> u64 {
+    group.follow_from(
+        "a question",
+        20.0,
+        || group.say(words),
+        |state| {
+            let dialogue = &state["dialogue"];
+            let prompt = dialogue["prompt"].as_u64().filter(|prompt| *prompt > before)?;
+            (dialogue["expects_answer"] == true).then_some(prompt)
+        },
+    )
+}
+
+/// Returns the words that were accepted last, and the lines that they may answer.
+pub(crate) fn last_heard(group: &Group) -> (String, Vec<u64>) {
+    let journal = group.must(&["journal", "speech", "--json"]).stdout;
+    let records = journal.lines().map(|line| serde_json::from_str(line).unwrap());
+    let records: Vec<serde_json::Value> = records.collect();
+    let mut accepted = records.iter().filter(|line| line["record"]["type"] == "accepted");
+    let last = &accepted.next_back().unwrap()["record"];
+    let asked = last["asked"].as_array().unwrap().iter();
+    let prompts = asked.map(|asked| asked["prompt"].as_u64().unwrap()).collect();
+    (last["text"].as_str().unwrap().to_owned(), prompts)
+}
+
+#[test]
+fn words_answer_the_line_that_the_command_line_names() {
+    let group = Group::up(&[]);
+    let first = asked_by_line(&group, "get me the bowl", 0);
+    let second = asked_by_line(&group, "no", first);
+    assert_eq!(group.status()["prompt"], second);
+    let early = group.call(&["say", "--seen", "999", "no"]);
+    assert_eq!(early.code, Some(64), "{early:?}");
+    assert!(early.stderr.contains(&format!("a line that was said, up to {second}")), "{early:?}");
+    group.must(&["say", "--seen", &first.to_string(), "yes"]);
+    assert_eq!(last_heard(&group), ("yes".to_owned(), vec![first]));
+    let waited = group.call(&["await", "pick", "--timeout", "0.5", "--json"]).json();
+    assert!(waited["prompt"].as_u64() >= Some(second), "{waited}");
+    group.down();
+}

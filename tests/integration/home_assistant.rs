@@ -16,7 +16,7 @@ const FIXTURES: &str = concat!(
     "/../shared/sdk/home-assistant/tests/fixtures/console.json"
 );
 /// Values that differ from run to run, with the moment, or in the last digit between processors.
-const VARYING: [&str; 10] = [
+const VARYING: [&str; 11] = [
     "id",
     "name",
     "version",
@@ -26,6 +26,7 @@ const VARYING: [&str; 10] = [
     "moving",
     "seconds",
     "remaining_s",
+    "stop",
     "belief",
 ];
 
@@ -132,6 +133,8 @@ fn record_answers(recorder: &mut Recorder) {
     recorder.state("state_stopped", &hall, "stopped", &stopped);
     hall.stop();
     recorder.post("too_soon", &hall, "/motion/resume");
+    let other = json!({ "stop": 1 });
+    recorder.ask("other_stop", &hall, ("POST", "/motion/resume", &[], other));
     let resumed = wait_for("the release", 20.0, || {
         Some(hall.post("/motion/resume")).filter(|answer| answer.status == 200)
     });

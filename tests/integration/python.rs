@@ -149,8 +149,16 @@ with Client() as robot:
     robot.stop()
     while not robot.look().arm.stopped:
         time.sleep(0.01)
+    seen = robot.look().arm.stop
+    robot.stop()
+    while (stop := robot.look().arm.stop) == seen:
+        time.sleep(0.01)
     time.sleep(2.2)
-    robot.resume()
+    try:
+        robot.resume(stop=seen)
+    except NotStopped as refused:
+        outcome["refused"] = str(refused)
+    robot.resume(stop=stop)
     while robot.look().arm.stopped:
         time.sleep(0.01)
     robot.say("thank you")
@@ -172,6 +180,8 @@ fn client_in_python_says_waits_and_stops() {
     let outcome: Value = ended.json();
     assert_eq!(outcome["picked"], serde_json::json!(["clear", "DELIVERED"]), "{outcome}");
     assert_eq!(outcome["belief"], serde_json::json!([6, 1.0]), "{outcome}");
+    let refused = outcome["refused"].as_str();
+    assert!(refused.is_some_and(|why| why.contains("another stop")), "{outcome}");
     assert!(outcome["answer"].as_str().is_some_and(|text| !text.is_empty()), "{outcome}");
     // The example answers the robot's questions.
     let ended = client(&group, &[&example("client"), "get me the bowl", "--want", "white3"]);

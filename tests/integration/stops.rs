@@ -1,13 +1,17 @@
 //! The motion stop's own path: an order outlasts every absence of the arm's service, and resuming is never an accident.
 
 use crate::dashboard::{Terminal, has};
+use messages::StopId;
 use rustix::process::{Pid, Signal, kill_process};
+use serde_json::json;
 use service::clock;
-use service::stop_socket::is_kept;
+use service::stop_socket::{self, RELEASE_PATIENCE, StopError, is_kept};
 use std::io::{BufRead, BufReader, Read};
 use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
+use whichone_tests::console::Visitor;
+use whichone_tests::http_program::Program;
 use whichone_tests::motion_watch::MotionWatch;
 use whichone_tests::shortage::JointWatch;
 use whichone_tests::{Group, run, wait_for};
@@ -276,8 +280,50 @@ fn release_counts_two_seconds_after_any_stop_and_says_so() {
     assert!(ended.stderr.contains("less than 2 s before"), "{ended:?}");
     std::thread::sleep(RELEASED_AFTER);
     assert_eq!(group.arm()["stopped"], true, "not released later either");
-    group.must(&["resume-motion"]);
+    let released = group.must(&["resume-motion"]);
+    assert!(released.stderr.contains("releasing the stop that was given"), "{released:?}");
     group.wait_shown(false);
+    group.down();
+}
+
+/// Who begins to release a stop has not seen the one that is given meanwhile.
+#[test]
+fn release_of_a_stop_that_is_not_the_latest_is_refused_and_leaves_the_arm_stopped() {
+    let group = Group::up(&[]);
+    let program = Program::new(&group, "hall", "see,resume");
+    let mut page = group.page(&Visitor::operator(1));
+    let mut watch = Terminal::start(&mut group.command(&["watch"]), 110, 32);
+    group.must(&["stop-motion"]);
+    let seen = page.until_part("arm", |arm| arm["stopped"] == true)["stop"].clone();
+    assert!(seen.as_u64() > Some(0), "{seen}");
+    watch.wait_for("the stop", |lines| has(lines, "STOPPED"));
+    watch.press("rresum");
+    watch.wait_for("the word", |lines| has(lines, "Enter: resum_"));
+    std::thread::sleep(Duration::from_millis(50));
+    group.must(&["stop-motion"]);
+    let later = page.until_part("arm", |arm| arm["stop"].as_u64() > seen.as_u64())["stop"].clone();
+    std::thread::sleep(RELEASED_AFTER);
+
+    let old = json!({ "stop": seen });
+    let refused = program.ask("POST", "/motion/resume", &[], &old.to_string());
+    assert_eq!((refused.status, &refused.body["code"]), (409, &json!("other_stop")), "{refused:?}");
+    let refused = page.ask("resume", &old);
+    assert!(refused["error"].as_str().is_some_and(|why| why.contains("another stop")), "{refused}");
+    let stop = StopId(seen.as_u64().unwrap());
+    let refused = stop_socket::release(group.paths(), stop, RELEASE_PATIENCE, &mut |_| true);
+    assert_eq!(refused, Err(StopError::OtherStop));
+    watch.press("e\r");
+    watch.wait_for("the refusal", |lines| has(lines, "another stop was given"));
+    assert_never_released(&group, "the first stop was seen");
+
+    let unreadable = program.ask("POST", "/motion/resume", &[], r#"{"stop": "last"}"#);
+    assert_eq!(unreadable.status, 400, "{unreadable:?}");
+    assert_eq!(program.get("/state").body["arm"]["stop"], later);
+    let released =
+        program.ask("POST", "/motion/resume", &[], &json!({ "stop": later }).to_string());
+    assert_eq!(released.status, 200, "{released:?}");
+    assert_eq!(page.until_part("arm", |arm| arm["stopped"] == false)["stop"], 0);
+    drop((page, watch));
     group.down();
 }
 

@@ -127,8 +127,7 @@ impl World {
         if order == MotionOrder::Resume {
             self.run(RESUME_AFTER.s());
         }
-        let given_ns = self.now.ns();
-        let order = StopOrder { order, given_ns };
+        let order = StopOrder::new(order, self.now);
         self.to_arm.push(In::StopOrder(order, Caller::named(b"a client")));
     }
 

@@ -130,7 +130,7 @@ impl Robot for Group {
                 self.inboxes.speech.push(speech::In::Injection(injection));
             }
             Input::Motion(order) => {
-                let order = StopOrder { order, given_ns: self.now.ns() };
+                let order = StopOrder::new(order, self.now);
                 self.inboxes.arm.push(arm::In::StopOrder(order, Caller::named(b"an operator")));
             }
         }

@@ -344,6 +344,7 @@ impl ArmNode {
                 at_rest: self.is_at_rest(),
                 durable: !self.unsynced,
                 inhibit: self.driver.inhibit(),
+                stop: self.state.stop(),
             };
             fx.publish_urgent(Out::StopState(caller, state));
         }

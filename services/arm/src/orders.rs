@@ -5,7 +5,8 @@ use crate::{ArmNode, Fx};
 use manipulation::Limb;
 use messages::pick::{Order, Pick, judge};
 use messages::{
-    ActId, ActKind, MotionOrder, MotionPhase, PickId, PickOutcome, PickPhase, RobotAct, Task,
+    ActId, ActKind, MotionOrder, MotionPhase, PickId, PickOutcome, PickPhase, RobotAct, StopId,
+    Task,
 };
 use scene::ObjectId;
 use service::Time;
@@ -164,7 +165,7 @@ impl ArmNode {
 
     /// Handles the motion stop and its release.
     pub(crate) fn on_stop_order(&mut self, order: &StopOrder, now: Time, fx: &mut Fx) {
-        let (order, given) = (order.order, Time(order.given_ns));
+        let (order, given, stop) = (order.order, Time(order.given_ns), order.stop);
         if given <= self.state.obeyed {
             return;
         }
@@ -175,6 +176,11 @@ impl ArmNode {
         // Its giver has given it up; it has waited here, in a queue that was not read.
         if order == MotionOrder::Resume && now.since(given) > RELEASE_PATIENCE && given > Time(0) {
             tracing::warn!("motion stop release ignored: too old");
+            return;
+        }
+        // Its giver has not seen the stop in force.
+        if stop > StopId(0) && stop != self.state.stop() {
+            tracing::warn!("release of the motion stop ignored: meant for another stop");
             return;
         }
         // Where the stop is of an earlier boot, its time is not known, and long ago.

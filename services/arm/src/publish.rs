@@ -183,6 +183,7 @@ impl Publisher {
             moving: (!facts.is_at_rest).into(),
             hindrance: facts.inhibit.code(),
             remaining_s: seconds / self.time_scale,
+            stop: state.stop().0,
             ..ArmStatus::default()
         };
         let Some(pick) = &state.pick else { return status };

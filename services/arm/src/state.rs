@@ -4,7 +4,7 @@
 use arm_driver::Posture;
 use manipulation::{Limb, Robot};
 use messages::pick::Pick;
-use messages::{MotionOrder, PickOutcome, PickPhase, Task};
+use messages::{MotionOrder, PickOutcome, PickPhase, StopId, Task};
 use scene::ObjectId;
 use serde::{Deserialize, Serialize};
 use service::Time;
@@ -137,6 +137,12 @@ impl ArmState {
             obeyed: Time(0),
             waits_for_person: false,
         }
+    }
+
+    /// Returns the stop in force: its time in microseconds, which JSON's numbers hold exactly; 1 if it is of an earlier
+    /// boot.
+    pub(crate) fn stop(&self) -> StopId {
+        StopId(if self.stopped { (self.obeyed.ns() / 1_000).max(1) } else { 0 })
     }
 
     /// Returns how an object was held when it was handed over, if that is remembered.

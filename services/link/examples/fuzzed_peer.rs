@@ -17,7 +17,7 @@ use link::motion::{Order, Request, Seen};
 use link::names::{Call, Keys};
 use link::say::{Said, Sent};
 use link::session::{connect, request};
-use messages::{RequestKey, Sound};
+use messages::{RequestKey, Sound, StopId};
 use roster::Name;
 use zenoh::{Session, Wait};
 
@@ -132,8 +132,8 @@ impl Dice {
         let order = match self.roll(3) {
             0 => Order::Stop,
             1 => {
-                let (at_ns, in_force_ns) = (time(self), time(self));
-                Order::Release(Seen { at_ns, in_force_ns, stopped: true })
+                let (at_ns, in_force_ns, stop) = (time(self), time(self), StopId(time(self)));
+                Order::Release(Seen { at_ns, in_force_ns, stopped: true, stop })
             }
             _ => return self.bytes(60),
         };

@@ -1,7 +1,7 @@
 //! Orders to the motion stop over a link, exactly as safe as on the robot.
 //!
 //! A stop is stamped with the robot's clock when it first arrives there, and keeps that stamp; so
-//! is a release. A release names the stop that it lifts, by that stop's stamp, and the state that
+//! is a release. A release names the stop that it lifts, for the arm to compare, and the state that
 //! the person saw, which is younger than [`RELEASE_AGE_MAX`]: a later stop is younger still, and
 //! the arm ignores a release that was stamped less than [`RESUME_AFTER`] after a stop, and orders
 //! older than the last one obeyed. So a release lifts only the stop it names, in any order of
@@ -9,11 +9,11 @@
 
 use std::collections::VecDeque;
 
-use messages::MotionOrder;
+use messages::{MotionInhibit, MotionOrder, StopId};
 use serde::{Deserialize, Serialize};
 use service::bounded::push_bounded;
 use service::stop_socket::{
-    Progress, RESUME_AFTER, StopClient, StopError, StopState, default_patience,
+    LOOK, Progress, RESUME_AFTER, StopClient, StopError, StopOrder, StopState, default_patience,
 };
 use service::{Span, Time};
 
@@ -31,6 +31,24 @@ pub struct Seen {
     pub in_force_ns: u64,
     /// Whether the stop is latched.
     pub stopped: bool,
+    /// The stop in force, 0 for none; in a release the one that it lifts.
+    pub stop: StopId,
+}
+
+impl Seen {
+    /// Returns the answer to a local client that asks for the state. Rest is unknown.
+    fn state(&self, now: Time) -> StopState {
+        let age = Time(self.at_ns).since(Time(self.in_force_ns));
+        StopState {
+            given_ns: 0,
+            in_force_ns: (now - age).ns(),
+            stopped: self.stopped,
+            at_rest: false,
+            durable: false,
+            inhibit: MotionInhibit::None,
+            stop: self.stop,
+        }
+    }
 }
 
 /// An order by a person.
@@ -170,7 +188,8 @@ impl StandingStop {
     pub fn advance(&mut self, client: &StopClient, now: Time) {
         let Some(progress) = &mut self.progress else { return };
         if progress.due(now) {
-            progress.on_sent(&client.send(progress.order(), progress.given()));
+            let order = StopOrder::new(progress.order(), progress.given());
+            progress.on_sent(&client.send(&order));
         }
         if let Some(why) = progress.warning(now) {
             tracing::warn!(%why, "stop over the link not confirmed; it is repeated");
@@ -224,18 +243,22 @@ struct Current {
 }
 
 impl Orders {
-    /// Takes an order of a local client, given at `given_ns`, and each of its repetitions. Returns
-    /// the answer to it if there is one already.
+    /// Takes an order of a local client and each of its repetitions, or its question for the state.
+    /// Returns the answer to it if there is one already.
     ///
     /// # Errors
     /// A release of a robot whose state is not known.
     pub fn take(
         &mut self,
-        (order, given_ns): (MotionOrder, u64),
+        order: &StopOrder,
         seen: Option<Seen>,
         key: [u8; 16],
         now: Time,
     ) -> Result<Option<StopState>, &'static str> {
+        let StopOrder { given_ns, stop, .. } = *order;
+        if *order == LOOK {
+            return Ok(seen.map(|seen| seen.state(now)));
+        }
         if let Some(current) = self.current.as_mut().filter(|current| current.given_ns == given_ns)
         {
             current.repeated = now;
@@ -245,9 +268,13 @@ impl Orders {
         if is_overruled {
             return Ok(None);
         }
-        let order = match order {
+        let order = match order.order {
             MotionOrder::Stop => Order::Stop,
-            MotionOrder::Resume => Order::Release(seen.ok_or("the robot's state is not known")?),
+            MotionOrder::Resume => {
+                let seen = seen.ok_or("the robot's state is not known")?;
+                let stop = if stop > StopId(0) { stop } else { seen.stop };
+                Order::Release(Seen { stop, ..seen })
+            }
         };
         let request = Request { key, order };
         self.current = Some(Current {
@@ -273,7 +300,7 @@ impl Orders {
         if let (Order::Release(old), Some(new)) = (&mut current.request.order, seen)
             && old.in_force_ns == new.in_force_ns
         {
-            *old = new;
+            *old = Seen { stop: old.stop, ..new };
         }
         let way = current.way;
         (current.due, current.way) = match way {

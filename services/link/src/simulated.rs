@@ -321,6 +321,7 @@ impl Robot {
                     at_rest: true,
                     durable: true,
                     inhibit: messages::MotionInhibit::None,
+                    stop: messages::StopId(0),
                 }))
             }
         };

@@ -1,7 +1,7 @@
 //! Orders to the motion stop, on the stop's own path. A stop is repeated until the arm confirms it or
 //! another order overrules it, however long the arm's service is away.
 
-use messages::MotionOrder;
+use messages::{MotionOrder, StopId};
 use service::stop_socket::{Progress, StopClient, StopState, default_patience};
 use service::{Span, Time};
 
@@ -46,7 +46,9 @@ impl<C> Orders<C> {
     pub fn give(&mut self, order: MotionOrder, caller: Option<C>, now: Time) -> Vec<C> {
         let mut overruled = Vec::new();
         match &mut self.0 {
-            Some(pending) if pending.progress.order() == order => pending.progress.renew(now),
+            Some(pending) if pending.progress.order() == order => {
+                pending.progress.renew(now, StopId(0))
+            }
             pending => {
                 let progress = Progress::new(order, now, default_patience(order));
                 let before = pending.replace(Pending { progress, callers: Vec::new() });
@@ -103,7 +105,8 @@ mod tests {
     fn answer(given: Time, stopped: bool) -> StopState {
         let (given_ns, in_force_ns) = (given.ns(), given.ns());
         let inhibit = MotionInhibit::None;
-        StopState { given_ns, in_force_ns, stopped, at_rest: true, durable: true, inhibit }
+        let (at_rest, durable, stop) = (true, true, StopId(0));
+        StopState { given_ns, in_force_ns, stopped, at_rest, durable, inhibit, stop }
     }
 
     fn done<C>(event: Option<Event<C>>) -> (Vec<C>, Answer) {

@@ -19,8 +19,8 @@ mod talk;
 
 pub use command_line::args::ConfigArgs;
 pub use group::{
-    ConsoleArgs, DownArgs, LogsArgs, ReloadArgs, RestartArgs, ServiceArgs, StopArgs, SwapArgs,
-    UpArgs, WaitFor,
+    ConsoleArgs, DownArgs, ReloadArgs, RestartArgs, ServiceArgs, StopArgs, SwapArgs, UpArgs,
+    WaitFor,
 };
 pub use link::LinkArgs;
 pub use objects::{ObjectsArgs, ObjectsVerb, PlaceArgs};
@@ -172,7 +172,7 @@ pub enum Verb {
     /// Make, list or revoke tokens with which programs talk to the robot over HTTP (docs/http.md).
     Token(http_api::verb::TokenArgs),
     /// Show the logs of the services.
-    Logs(LogsArgs),
+    Logs(bug_report::LogsArgs),
     /// Reload the configuration and restart the affected services.
     Reload(ReloadArgs),
     /// Check a configuration: list every problem, or the services that would run.

@@ -22,7 +22,6 @@ mod leftovers;
 mod licences;
 mod link;
 mod listen;
-mod logs;
 mod motion;
 mod objects;
 mod operate;
@@ -57,7 +56,7 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         Verb::Release(args) => operate::on_service(&paths()?, Request::Release, args, out),
         Verb::Console(args) => console::console(&paths()?, &args, out),
         Verb::Token(args) => http_api::verb::token(&paths()?, &args, out),
-        Verb::Logs(args) => logs::logs(&paths()?, &args, out),
+        Verb::Logs(args) => bug_report::logs(&paths()?, &args, out),
         Verb::Reload(args) => operate::reload(&paths()?, args, out),
         Verb::Check(args) => laboratory::check(&args, out),
         Verb::Swap(args) => operate::swap(&paths()?, args, out),

@@ -1,7 +1,8 @@
-//! `whichone report`: diagnostics of a group for a maintainer, in one archive or folder.
+//! `whichone report`: diagnostics of a group for a maintainer, in one archive or folder; and `whichone logs`.
 //!
 //! | contents | file |
 //! |---|---|
+//! | the logs for a reader at the machine | `logs.rs` |
 //! | sources | `collection.rs`, `own_program.rs`, `machine.rs` |
 //! | keys, passwords and tokens, which never leave | `secrets.rs`, `secret_names.rs` |
 //! | what people said, which leaves on request only | `words.rs` |
@@ -12,6 +13,7 @@
 
 mod bundle;
 mod collection;
+mod logs;
 mod machine;
 mod own_program;
 mod secret_names;
@@ -35,6 +37,7 @@ use service::group::{GroupName, GroupPaths};
 use vocabulary::wall_time;
 
 use bundle::Bundle;
+pub use logs::{LogsArgs, logs};
 
 /// Arguments of `report`.
 #[derive(Debug, Args)]

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use messages::MotionOrder;
+use messages::{MotionOrder, StopId};
 use serde::Serialize;
 use service::group::GroupPaths;
 use service::stop_socket::{self, RELEASE_PATIENCE, StopError, StopState};
@@ -90,11 +90,10 @@ impl Motion {
         answered
     }
 
-    /// Releases the stop.
-    pub(crate) async fn resume(&self) -> Result<Confirmed, Problem> {
+    /// Releases this stop, 0 for any.
+    pub(crate) async fn resume(&self, stop: StopId) -> Result<Confirmed, Problem> {
         let paths = self.paths.clone();
-        let give =
-            move || stop_socket::give(&paths, MotionOrder::Resume, RELEASE_PATIENCE, &mut |_| true);
+        let give = move || stop_socket::release(&paths, stop, RELEASE_PATIENCE, &mut |_| true);
         match tokio::task::spawn_blocking(give).await {
             Ok(Ok(state)) => Ok(state.into()),
             Ok(Err(why)) => Err(not_released(&why)),
@@ -106,6 +105,7 @@ impl Motion {
 fn not_released(why: &StopError) -> Problem {
     let text = why.to_string();
     match why {
+        StopError::OtherStop => Problem::conflict("other_stop", text),
         StopError::TooSoon => Problem::conflict("too_soon", text),
         StopError::Overruled => Problem::conflict("overruled", text),
         StopError::NotTaken(..) => Problem::conflict("not_taken", text),

@@ -98,10 +98,16 @@ async fn stop(State(api): Shared, on: On, headers: HeaderMap) -> Result<Response
     Ok(as_json(&stopped?))
 }
 
-async fn resume(State(api): Shared, on: On, headers: HeaderMap) -> Result<Response, Problem> {
+async fn resume(
+    State(api): Shared,
+    on: On,
+    headers: HeaderMap,
+    body: Body,
+) -> Result<Response, Problem> {
     let caller = may(&api, on, &headers, Right::Resume, "resume").await?;
+    let stop = say::stop_to_release(body).await?;
     api.record(&caller, "resume", None).await?;
-    Ok(as_json(&api.motion.resume().await?))
+    Ok(as_json(&api.motion.resume(stop).await?))
 }
 
 /// Returns who makes a request that needs a right.

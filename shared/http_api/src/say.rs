@@ -2,10 +2,11 @@
 
 use std::time::{Duration, Instant};
 
-use axum::body::{Body, to_bytes};
+use axum::body::{Body, Bytes, to_bytes};
 use axum::http::{HeaderMap, HeaderName, StatusCode, header};
 use axum::response::{IntoResponse, Response};
-use messages::PromptId;
+use messages::{PromptId, StopId};
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use service::console_link::random_secret;
 use tokio::sync::oneshot;
@@ -51,6 +52,14 @@ struct Said {
     seen: Option<u64>,
 }
 
+/// The body of `resume`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Release {
+    #[serde(default)]
+    stop: StopId,
+}
+
 /// A checked request.
 #[derive(Debug)]
 pub(crate) struct Words {
@@ -74,26 +83,42 @@ struct Answer {
     reply: Reply,
 }
 
-/// Reads the body.
+/// Reads the body of `say`.
 pub(crate) async fn read(
     body: Body,
     headers: &HeaderMap,
     caller: &Caller,
 ) -> Result<Words, Problem> {
+    let bytes = bytes(body).await?;
+    check(parse(&bytes, r#"{"text": "…"}"#)?, headers, caller)
+}
+
+/// Reads the body of `resume`, which may be empty: the stop that the person saw, 0 for any.
+pub(crate) async fn stop_to_release(body: Body) -> Result<StopId, Problem> {
+    let bytes = bytes(body).await?;
+    if bytes.is_empty() {
+        return Ok(StopId(0));
+    }
+    parse::<Release>(&bytes, r#"nothing, or {"stop": 1234}"#).map(|release| release.stop)
+}
+
+async fn bytes(body: Body) -> Result<Bytes, Problem> {
     let read = timeout(Duration::from_secs(BODY_S), to_bytes(body, BODY_MAX)).await;
-    let bytes = match read {
-        Err(_) => return Err(Problem::slow(BODY_S)),
+    match read {
+        Err(_) => Err(Problem::slow(BODY_S)),
         Ok(Err(error)) if error.to_string().contains("length limit") => {
-            return Err(Problem::too_large(BODY_MAX));
+            Err(Problem::too_large(BODY_MAX))
         }
-        Ok(Err(error)) => return Err(Problem::unreadable(error.to_string())),
-        Ok(Ok(bytes)) => bytes,
-    };
-    let said: Said = serde_json::from_slice(&bytes).map_err(|error| {
-        let help = r#"help: expected {"text": "…"}; see /api/v1/openapi.json"#;
+        Ok(Err(error)) => Err(Problem::unreadable(error.to_string())),
+        Ok(Ok(bytes)) => Ok(bytes),
+    }
+}
+
+fn parse<T: DeserializeOwned>(bytes: &[u8], expected: &str) -> Result<T, Problem> {
+    serde_json::from_slice(bytes).map_err(|error| {
+        let help = format!("help: expected {expected}; see /api/v1/openapi.json");
         Problem::unreadable(format!("invalid request: {error}; {help}"))
-    })?;
-    check(said, headers, caller)
+    })
 }
 
 fn check(said: Said, headers: &HeaderMap, caller: &Caller) -> Result<Words, Problem> {

@@ -79,6 +79,8 @@ pub(crate) struct ArmState {
     object: Option<String>,
     moving: bool,
     stopped: bool,
+    /// The stop in force, 0 for none: a release names it.
+    stop: u64,
     /// Expected seconds until the object is handed over, 0 where nothing is fetched.
     remaining_s: f64,
 }
@@ -302,6 +304,7 @@ fn arm_state(scene: &Scene, arm: &ArmStatus) -> ArmState {
         object: object.map(|object| object.name.clone()),
         moving: arm.moving != 0,
         stopped: arm.stopped != 0,
+        stop: arm.stop,
         remaining_s: arm.remaining_s,
     }
 }

@@ -18,6 +18,7 @@ use service::exit::{Exit, Failure};
 use service::program::find_program;
 
 use crate::args::CheckArgs;
+use crate::progress::Progress;
 
 /// Reports every problem of a configuration at once, or the services that would run.
 ///
@@ -26,12 +27,14 @@ use crate::args::CheckArgs;
 pub fn check(args: &CheckArgs, out: &mut Output<'_>) -> Outcome {
     let folder = configuration::folder(&args.config)?;
     let profile = args.config.profile.as_deref();
-    let mut examined = preflight::examine(&folder, profile, &args.config.set, None);
+    let progress = Progress::start(out);
+    let set = &args.config.set;
+    let mut examined = preflight::examine(&folder, profile, set, None, &|line| progress.at(line));
     let missing = examined.settings.iter().flat_map(|settings| missing_programs(settings, &folder));
     missing.for_each(|problem| examined.report.add(problem));
     let unmet = examined.settings.as_ref().filter(|_| examined.arm_is_right).map(unmet_by_robot);
     unmet.into_iter().flatten().for_each(|problem| examined.report.add(problem));
-    verdict(examined, &folder, args.values, out)
+    verdict(examined, &folder, args.values, progress, out)
 }
 
 /// Reads the scene's words back, and reports on the configuration of `from`: every problem, or the services that would run.
@@ -39,8 +42,10 @@ pub(super) fn verdict(
     examined: Examined,
     from: &Path,
     with_values: bool,
+    progress: Progress,
     out: &mut Output<'_>,
 ) -> Outcome {
+    progress.at("reading the scene's words back".to_owned());
     let Examined { settings, mut report, .. } = examined;
     // The scene of the settings lacks its wrong parts.
     let words = settings.as_ref().map(Settings::scene_file).and_then(|file| {
@@ -48,6 +53,7 @@ pub(super) fn verdict(
         Some(misunderstood(&scene, file, word_findings))
     });
     let (problems, warnings) = words.unwrap_or_default();
+    drop(progress);
     problems.into_iter().for_each(|problem| report.add(problem));
     match report.verdict(settings) {
         Err(problems) => refused(&problems, out),

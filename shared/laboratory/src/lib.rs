@@ -22,6 +22,7 @@ mod conform;
 pub mod described_arm;
 mod export;
 mod planning;
+mod progress;
 mod replay;
 mod robot;
 mod scene;

@@ -33,7 +33,7 @@ pub(super) fn import(args: &ImportArgs, out: &mut Output<'_>) -> Outcome {
         shipped::write_into(&folder)?;
     }
     files.write(&imported)?;
-    let examined = preflight::examine(&folder, Some(&options.name), &[], None);
+    let examined = preflight::examine(&folder, Some(&options.name), &[], None, &|_| {});
     report(&files, &imported, &options.name, &folder, examined.verdict().err(), out)
 }
 

@@ -16,6 +16,7 @@ use service::exit::{Exit, Failure};
 
 use crate::args::{SceneCheckArgs, SceneNewArgs, SceneVerb};
 use crate::check;
+use crate::progress::Progress;
 
 mod diff;
 mod place;
@@ -36,7 +37,8 @@ pub fn scene(what: SceneVerb, out: &mut Output<'_>) -> Outcome {
 
 fn check_scene(args: &SceneCheckArgs, out: &mut Output<'_>) -> Outcome {
     let (path, file) = read(&args.file, &args.config)?;
-    check::verdict(load(&args.config, file)?, &path, false, out)
+    let progress = Progress::start(out);
+    check::verdict(load(&args.config, file, &progress)?, &path, false, progress, out)
 }
 
 fn new(args: &SceneNewArgs, out: &mut Output<'_>) -> Outcome {
@@ -55,8 +57,10 @@ fn new(args: &SceneNewArgs, out: &mut Output<'_>) -> Outcome {
     let text = scene_editing::new_scene(&name, &schema);
     let label = path.display().to_string();
     let mut edit = SceneEdit::parse(&label, &text)?;
-    let placed = place::places(&mut edit, &label, &args.config)?.placed;
-    load(&args.config, TextFile::new(&*label, edit.text()))?.verdict()?;
+    let progress = Progress::start(out);
+    let placed = place::places(&mut edit, &label, &args.config, &progress)?.placed;
+    load(&args.config, TextFile::new(&*label, edit.text()), &progress)?.verdict()?;
+    drop(progress);
     safe_files::write_new_output(&path, edit.text().as_bytes(), safe_files::Readers::AsBefore)
         .map_err(|error| match error.kind() {
             ErrorKind::AlreadyExists => {
@@ -87,9 +91,10 @@ fn read(named: &Path, config: &ConfigArgs) -> Result<(PathBuf, TextFile), Failur
 }
 
 /// Loads the configuration with another scene, with all checks.
-fn load(args: &ConfigArgs, scene: TextFile) -> Result<Examined, Failure> {
-    let folder = configuration::folder(args)?;
-    Ok(preflight::examine(&folder, args.profile.as_deref(), &args.set, Some(scene)))
+fn load(args: &ConfigArgs, scene: TextFile, progress: &Progress) -> Result<Examined, Failure> {
+    let (folder, profile) = (configuration::folder(args)?, args.profile.as_deref());
+    let watch = |line| progress.at(line);
+    Ok(preflight::examine(&folder, profile, &args.set, Some(scene), &watch))
 }
 
 /// Reads the configuration with another scene, without checks of the arm's reach.

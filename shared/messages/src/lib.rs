@@ -54,6 +54,6 @@ pub use services::{SUPERVISOR, Service};
 pub use sound_file::SoundFile;
 pub use text::{FixedText, TextTooLong};
 pub use topics::Topic;
-pub use vocabulary::ids::{ActId, InteractionId, PickId, PromptId, UtteranceSeq};
+pub use vocabulary::ids::{ActId, InteractionId, PickId, PromptId, StopId, UtteranceSeq};
 pub use vocabulary::{ActKind, Ended, Interpretation, Outcome, PickOutcome, PickPhase, Task};
 pub use wire::{Code, WireCode, WireError, WireField};

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use manipulation::{Cuboid, Limb, ObjectPose, PlanError, fetching_limb};
 
-use crate::ArmSetup;
+use crate::{ArmSetup, Watch};
 
 /// Distances at which a nearer place is looked for, centimetres.
 const RINGS_CM: [f64; 22] = [
@@ -100,9 +100,10 @@ impl<'a> Arrangement<'a> {
     /// then puts each of `new`, which have no place yet, on the table. Returns those with a new
     /// place. Others keep theirs, out of the others' way; no place helps those that cannot be
     /// grasped.
-    pub fn arrange(&mut self, new: &[usize]) -> Vec<usize> {
+    pub fn arrange(&mut self, new: &[usize], watch: Watch<'_>) -> Vec<usize> {
         new.iter().for_each(|&i| self.stands[i] = false);
         let is_misplaced = |&i: &usize| {
+            watch(format!("checking reach: {i} of {} places", self.poses.len()));
             !self.is_late()
                 && matches!(self.limb(i), Err(error) if !matches!(error, PlanError::Grasp(_)))
         };
@@ -110,7 +111,8 @@ impl<'a> Arrangement<'a> {
         let misplaced: Vec<usize> = known.filter(is_misplaced).collect();
         misplaced.iter().for_each(|&i| self.stands[i] = false);
         let mut moved = Vec::new();
-        for &i in misplaced.iter().chain(new) {
+        for (n, &i) in misplaced.iter().chain(new).enumerate() {
+            watch(format!("finding places: {n} of {}", misplaced.len() + new.len()));
             let stays = self.poses[i].xyz_m;
             let place = if new.contains(&i) {
                 self.on_table(i)

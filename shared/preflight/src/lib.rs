@@ -16,7 +16,7 @@ mod testing;
 mod tests;
 
 pub use arrange::Arrangement;
-pub use load::{durations, examine, load, load_known};
+pub use load::{Watch, durations, examine, load, load_known};
 pub use measure::measure;
 pub use motion::{Extent, MotionError, Motions, Refusal};
 pub use reach::pose;

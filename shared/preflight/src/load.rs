@@ -20,7 +20,7 @@ pub fn load(
     profile: Option<&str>,
     overrides: &[(String, String)],
 ) -> Result<Settings, Diagnostics> {
-    examine(dir, profile, overrides, None).verdict()
+    examine(dir, profile, overrides, None, &|_| {}).verdict()
 }
 
 /// Does the same as [`load`], but skips the check of the arm's reach, which takes most of the time,
@@ -34,8 +34,11 @@ pub fn load_known(
     overrides: &[(String, String)],
     is_known: impl FnOnce(&Settings) -> bool,
 ) -> Result<Settings, Diagnostics> {
-    checked(Settings::examine(dir, profile, overrides, None), is_known).verdict()
+    checked(Settings::examine(dir, profile, overrides, None), is_known, &|_| {}).verdict()
 }
+
+/// Takes what a check is at, as a line for people, from any of its threads.
+pub type Watch<'a> = &'a (dyn Fn(String) + Sync);
 
 /// Does the same as [`load`] before a verdict, so that further checks may add to the report.
 /// `scene` is read in place of the scene that the configuration names.
@@ -44,11 +47,16 @@ pub fn examine(
     profile: Option<&str>,
     overrides: &[(String, String)],
     scene: Option<TextFile>,
+    watch: Watch<'_>,
 ) -> Examined {
-    checked(Settings::examine(dir, profile, overrides, scene), |_| false)
+    checked(Settings::examine(dir, profile, overrides, scene), |_| false, watch)
 }
 
-fn checked(examined: Examined, is_known: impl FnOnce(&Settings) -> bool) -> Examined {
+fn checked(
+    examined: Examined,
+    is_known: impl FnOnce(&Settings) -> bool,
+    watch: Watch<'_>,
+) -> Examined {
     let Examined { mut settings, mut report, arm_is_right } = examined;
     let mut measured = None;
     // Durations are measured by the plans that show the reach.
@@ -58,7 +66,8 @@ fn checked(examined: Examined, is_known: impl FnOnce(&Settings) -> bool) -> Exam
     };
     if let Some(settings) = settings.as_ref().filter(is_left) {
         match ArmSetup::new(settings) {
-            Ok(setup) => reach::check(settings, &setup, &mut report, || {
+            Ok(setup) => reach::check(settings, &setup, &mut report, watch, || {
+                watch("planning the picks of all places".to_owned());
                 measured = costs(settings, &setup);
                 matches!(measured, Some(Ok(_)))
             }),

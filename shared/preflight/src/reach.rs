@@ -11,7 +11,7 @@ use diagnostics::{Diagnostic, Report};
 use manipulation::{GraspError, Limb, ObjectPose, PlanError, PlanSettings, check_reachable};
 use scene::{Form, Placement};
 
-use crate::{ArmSetup, Arrangement};
+use crate::{ArmSetup, Arrangement, Watch};
 
 /// Niceness of threads that help to check the reach.
 const NICENESS: i32 = 10;
@@ -31,6 +31,7 @@ pub(crate) fn check(
     settings: &Settings,
     setup: &ArmSetup,
     report: &mut Report,
+    watch: Watch<'_>,
     plan: impl FnOnce() -> bool,
 ) {
     let placed = placed(settings);
@@ -53,7 +54,7 @@ pub(crate) fn check(
     if has_planned {
         return;
     }
-    let found = reachable(setup, &poses, &setup.plan);
+    let found = reachable(setup, &poses, &setup.plan, watch);
     if found.iter().all(|found| matches!(found, Some(Ok(_)))) {
         return;
     }
@@ -64,7 +65,7 @@ pub(crate) fn check(
         return report.add(settings.diagnostic(&["arm", "robot"], error.to_string(), help));
     }
     let mut hand_over = None;
-    let elsewhere = reachable_elsewhere(&poses, setup);
+    let elsewhere = reachable_elsewhere(&poses, setup, watch);
     let names: Vec<&str> =
         placed.iter().map(|(n, _)| settings.scene.objects()[*n].name.as_str()).collect();
     let (arrangement, mut searched) = (Arrangement::new(setup, poses).until(until), 0);
@@ -82,6 +83,7 @@ pub(crate) fn check(
         }
         let is_searched = searched < SEARCHED_MAX && Instant::now() < until;
         searched += usize::from(is_searched);
+        watch(format!("looking for a better place of `{}`", settings.scene.objects()[*n].name));
         let (what, help) = move_help(i, &error, is_searched, &names, &arrangement);
         report.add(of_object(settings, *n, "xyz", &what, &help));
     }
@@ -106,8 +108,11 @@ fn reachable(
     setup: &ArmSetup,
     poses: &[ObjectPose],
     plan: &PlanSettings,
+    watch: Watch<'_>,
 ) -> Vec<Option<Result<Limb, PlanError>>> {
-    let next = AtomicUsize::new(0);
+    let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    let look_at = |done| watch(format!("checking reach: {done} of {} places", poses.len()));
+    look_at(0);
     let failed = OnceLock::<Instant>::new();
     let look = || -> Vec<_> {
         let mine = iter::from_fn(|| {
@@ -119,6 +124,7 @@ fn reachable(
             if found.is_err() {
                 failed.get_or_init(Instant::now);
             }
+            look_at(done.fetch_add(1, Ordering::Relaxed) + 1);
             (i, found)
         };
         mine.map(check).collect()
@@ -310,13 +316,13 @@ fn reason(error: &PlanError, setup: &ArmSetup) -> String {
 
 /// Returns for each object whether the arm could fetch it with the default hand-over: if so, the
 /// configured hand-over is at fault, not the object.
-fn reachable_elsewhere(poses: &[ObjectPose], setup: &ArmSetup) -> Vec<bool> {
+fn reachable_elsewhere(poses: &[ObjectPose], setup: &ArmSetup, watch: Watch<'_>) -> Vec<bool> {
     let hand_over_xyz_m = PlanSettings::default().hand_over_xyz_m;
     if setup.plan.hand_over_xyz_m == hand_over_xyz_m {
         return vec![false; poses.len()];
     }
     let plan = PlanSettings { hand_over_xyz_m, ..setup.plan };
-    let found = reachable(setup, poses, &plan);
+    let found = reachable(setup, poses, &plan, watch);
     found.iter().map(|found| matches!(found, Some(Ok(_)))).collect()
 }
 

@@ -292,7 +292,7 @@ fn nine_objects_without_places_are_arranged_the_same_way_each_time() {
     let all: Vec<usize> = (0..9).collect();
     let arranged = || {
         let mut arrangement = crate::Arrangement::new(&setup, poses.clone());
-        assert_eq!(arrangement.arrange(&all), all);
+        assert_eq!(arrangement.arrange(&all, &|_| {}), all);
         all.iter().for_each(|&i| assert!(arrangement.limb(i).is_ok(), "{i}"));
         all.iter().map(|&i| arrangement.place(i)).collect::<Vec<_>>()
     };
@@ -303,7 +303,7 @@ fn nine_objects_without_places_are_arranged_the_same_way_each_time() {
 fn a_search_for_places_ends_in_time_and_says_so() {
     let (setup, poses) = unplaced(2);
     let mut late = crate::Arrangement::new(&setup, poses).until(std::time::Instant::now());
-    assert_eq!(late.arrange(&[0, 1]), [] as [usize; 0]);
+    assert_eq!(late.arrange(&[0, 1], &|_| {}), [] as [usize; 0]);
     assert!(late.why_unplaced(1).contains("took too long"), "{}", late.why_unplaced(1));
 }
 

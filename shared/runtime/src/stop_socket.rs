@@ -6,7 +6,8 @@
 //! free descriptor in the service, with a hung supervisor and a dead policy.
 //!
 //! An order is a JSON object in one datagram, `{"order":"stop","given_ns":N}`, and is answered by
-//! the arm's [`StopState`]. A stop is repeated until the arm has confirmed it, however long its
+//! the arm's [`StopState`]. A release may name the stop that its giver saw, `"stop":N`: the arm keeps
+//! hold if another one is in force. A stop is repeated until the arm has confirmed it, however long its
 //! service is away ([`Progress`]); one whose giver ends first is kept in a file for the arm's
 //! return ([`KeptStop`]). `given_ns`, its time on the machine's monotonic clock, makes repetitions
 //! harmless, and keeps a release from lifting a stop that was given less than [`RESUME_AFTER`]
@@ -16,12 +17,13 @@
 use std::io;
 use std::os::fd::BorrowedFd;
 
-use messages::{MotionInhibit, MotionOrder};
+use messages::{MotionInhibit, MotionOrder, StopId};
 use rustix::event::{PollFd, PollFlags, poll};
 use rustix::io::Errno;
 use rustix::net::SocketAddrUnix;
 use rustix::process::{Uid, geteuid};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde_json::json;
 
 use crate::group::GroupPaths;
 use crate::{Span, Time, clock};
@@ -49,6 +51,19 @@ pub struct StopOrder {
     pub order: MotionOrder,
     /// Time at which it was given, nanoseconds (monotonic); older than the last is ignored.
     pub given_ns: u64,
+    /// The stop that a release is meant for, 0 for any.
+    #[serde(default)]
+    pub stop: StopId,
+}
+
+/// Asks for the state: a release that is older than every order is answered and changes nothing.
+pub const LOOK: StopOrder = StopOrder { order: MotionOrder::Resume, given_ns: 0, stop: StopId(0) };
+
+impl StopOrder {
+    /// A stop, or a release of any stop, that is given at `given`.
+    pub fn new(order: MotionOrder, given: Time) -> Self {
+        Self { order, given_ns: given.ns(), stop: StopId(0) }
+    }
 }
 
 /// State of the arm's motion stop: the answer to an order.
@@ -66,6 +81,9 @@ pub struct StopState {
     pub durable: bool,
     /// Reason why the robot cannot move; if the robot is silent, `at_rest` is an assumption.
     pub inhibit: MotionInhibit,
+    /// The stop in force; 0 if none is, or for an arm of an older version.
+    #[serde(default)]
+    pub stop: StopId,
 }
 
 impl StopState {
@@ -185,6 +203,12 @@ pub enum StopError {
     /// A later order is in force.
     #[error("overruled by a later order; help: see `whichone watch`")]
     Overruled,
+    /// A release of a stop that is no longer the latest.
+    #[error(
+        "another stop was given after the one that this releases, and holds; \
+         help: see why the arm was stopped again, then release that stop"
+    )]
+    OtherStop,
     /// A release that was given too soon after a stop.
     #[error(
         "a stop was given less than {} s before the release; help: give the release again",
@@ -230,15 +254,20 @@ impl StopClient {
         self.endpoint.fd()
     }
 
-    /// Sends the order that was given at `given`. A full queue drops it: it is repeated anyway.
+    /// Sends an order. A full queue drops it: it is repeated anyway.
     ///
     /// # Errors
     /// [`StopError::Absent`] if no process listens, [`StopError::NoGroup`] if `run` is missing too.
-    pub fn send(&self, order: MotionOrder, given: Time) -> Result<(), StopError> {
+    pub fn send(&self, order: &StopOrder) -> Result<(), StopError> {
         let socket_error = |error: Errno| StopError::Socket(error.to_string());
         let to = SocketAddrUnix::new(self.paths.stop_socket()).map_err(socket_error)?;
-        let given_ns = self.machine_ns(given);
-        match self.endpoint.send(&StopOrder { order, given_ns }, &to) {
+        let given_ns = self.machine_ns(Time(order.given_ns));
+        let mut message = json!({ "order": order.order, "given_ns": given_ns });
+        // An arm of an older version ignores an order with a key that it does not know.
+        if order.stop > StopId(0) {
+            message["stop"] = json!(order.stop);
+        }
+        match self.endpoint.send(&message, &to) {
             Ok(()) | Err(Errno::AGAIN | Errno::NOBUFS | Errno::NOMEM | Errno::INTR) => Ok(()),
             Err(Errno::NOENT | Errno::CONNREFUSED) if !self.paths.run().is_dir() => {
                 Err(StopError::NoGroup(self.paths.name().to_string()))
@@ -288,8 +317,42 @@ pub fn give(
     patience: impl Into<Option<Span>>,
     keep_trying: &mut dyn FnMut(Option<StopError>) -> bool,
 ) -> Result<StopState, StopError> {
+    carry_out(paths, Progress::new(order, clock::now(), patience), keep_trying)
+}
+
+/// As [`give`], a release of this stop alone; 0 stands for any.
+/// # Errors
+/// As [`give`], or another stop is in force.
+pub fn release(
+    paths: &GroupPaths,
+    stop: StopId,
+    patience: impl Into<Option<Span>>,
+    keep_trying: &mut dyn FnMut(Option<StopError>) -> bool,
+) -> Result<StopState, StopError> {
+    let release = Progress::new(MotionOrder::Resume, clock::now(), patience).of(stop);
+    carry_out(paths, release, keep_trying)
+}
+
+/// Returns the state of the motion stop; `None` if the arm's service does not answer in `patience`.
+pub fn look(paths: &GroupPaths, patience: Span) -> Option<StopState> {
+    let client = StopClient::open(paths).ok()?;
+    let until = clock::now() + patience;
+    while clock::now() < until {
+        client.send(&LOOK).ok()?;
+        wait(&client, RESEND_EVERY);
+        if let Some(state) = client.take() {
+            return Some(state);
+        }
+    }
+    None
+}
+
+fn carry_out(
+    paths: &GroupPaths,
+    mut progress: Progress,
+    keep_trying: &mut dyn FnMut(Option<StopError>) -> bool,
+) -> Result<StopState, StopError> {
     let client = StopClient::open(paths).map_err(|error| StopError::Socket(error.to_string()))?;
-    let mut progress = Progress::new(order, clock::now(), patience);
     let result = loop {
         progress.advance(&client, clock::now());
         let now = clock::now();

@@ -78,7 +78,7 @@ pub fn check(configuration: &Configuration, file: TextFile, read_back: ReadBack)
         (words, misunderstood(&scene, &file, read_back))
     });
     let (words, (misread, warnings)) = words.unwrap_or_default();
-    let loaded = preflight::examine(folder, profile.as_deref(), set, Some(file)).verdict();
+    let loaded = preflight::examine(folder, profile.as_deref(), set, Some(file), &|_| {}).verdict();
     let faults = loaded.as_ref().err().into_iter().flat_map(Diagnostics::iter);
     let problems = faults.chain(&misread).map(Problem::from).collect();
     Findings { problems, warnings, words }

@@ -1026,8 +1026,10 @@ typedef struct whichone_arm_status {
     uint8_t reserved[2];
     /** Expected seconds until the pick is done, 0 where none runs. */
     double remaining_s;
+    /** `StopId` of the motion stop in force, 0 for none: a release names it. */
+    uint64_t stop;
 } whichone_arm_status_t;
-WHICHONE_ASSERT(sizeof(whichone_arm_status_t) == 40, "size of ArmStatus");
+WHICHONE_ASSERT(sizeof(whichone_arm_status_t) == 48, "size of ArmStatus");
 WHICHONE_ASSERT(offsetof(whichone_arm_status_t, interaction) == 0, "offset of ArmStatus.interaction");
 WHICHONE_ASSERT(offsetof(whichone_arm_status_t, aimed_act) == 8, "offset of ArmStatus.aimed_act");
 WHICHONE_ASSERT(offsetof(whichone_arm_status_t, attempt) == 16, "offset of ArmStatus.attempt");
@@ -1040,8 +1042,9 @@ WHICHONE_ASSERT(offsetof(whichone_arm_status_t, hindrance) == 28, "offset of Arm
 WHICHONE_ASSERT(offsetof(whichone_arm_status_t, task) == 29, "offset of ArmStatus.task");
 WHICHONE_ASSERT(offsetof(whichone_arm_status_t, reserved) == 30, "offset of ArmStatus.reserved");
 WHICHONE_ASSERT(offsetof(whichone_arm_status_t, remaining_s) == 32, "offset of ArmStatus.remaining_s");
+WHICHONE_ASSERT(offsetof(whichone_arm_status_t, stop) == 40, "offset of ArmStatus.stop");
 #define WHICHONE_ARM_STATUS_TYPE "ArmStatus"
-#define WHICHONE_ARM_STATUS_SCHEMA "f718994c0b0a6760"
+#define WHICHONE_ARM_STATUS_SCHEMA "8b147729fca6b4f3"
 
 /** Joint states, at 100 Hz while the arm is busy, in the order of `JOINT_STATE_NAMES`. Arm to clients. */
 typedef struct whichone_joint_states {

@@ -71,6 +71,11 @@ uint64_t whichone_say(whichone_group_t *group, const char *text, double seconds)
  * they speak; `whichone people forget` has it forget that. */
 uint64_t whichone_say_from(whichone_group_t *group, const char *from, const char *text, double seconds);
 
+/** As `whichone_say_from`, in answer to the line `seen`: the `prompt` that the person was shown last, 0 if unknown. The
+ * words answer that question and no later one; they wait for a second for a line that was not said yet. */
+uint64_t whichone_say_in_answer(whichone_group_t *group, const char *from, const char *text, uint64_t seen,
+                                double seconds);
+
 /** Stops the arm and latches the stop, on the motion stop's own path: it needs no shared memory and no disk. Returns
  * true once the arm is at rest. The order is repeated for `seconds`, or, if they are below 0, for as long as the group
  * runs; warnings on standard error say that it is not confirmed. On false use the robot's own emergency stop. */
@@ -78,6 +83,10 @@ bool whichone_stop_motion(const whichone_group_t *group, double seconds);
 
 /** Releases the motion stop, within `seconds`, or 5 if they are below 0. */
 bool whichone_resume_motion(const whichone_group_t *group, double seconds);
+
+/** As `whichone_resume_motion`, for the stop that the person saw, `stop` of `whichone_arm_status_t`: if another one has
+ * been given since, it holds, and false is returned. 0 stands for any. */
+bool whichone_release_stop(const whichone_group_t *group, uint64_t stop, double seconds);
 
 /** Key of the scene in force, for messages about it. */
 uint64_t whichone_scene_key(const whichone_group_t *group);

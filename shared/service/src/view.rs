@@ -81,6 +81,8 @@ pub struct ArmView<'a> {
     pub moving: bool,
     /// True if the motion stop is latched.
     pub stopped: bool,
+    /// The stop in force, 0 for none: a release names it.
+    pub stop: u64,
     /// Condition that inhibits motion.
     pub hindrance: MotionInhibit,
     /// Time left until the pick is done, seconds.
@@ -102,6 +104,7 @@ impl<'a> ArmView<'a> {
             outcome: arm.outcome.get(),
             moving: arm.moving != 0,
             stopped: arm.stopped != 0,
+            stop: arm.stop,
             hindrance: arm.hindrance.get(),
             remaining_s: rounded(arm.remaining_s, 1),
             aimed: arm.aimed_act != 0,

@@ -46,6 +46,10 @@ id! {
     /// One line of the robot. A repeated question keeps its id. 0: none.
     PromptId
 }
+id! {
+    /// One motion stop, increasing: a release names the one that its giver saw. 0: none, or any.
+    StopId
+}
 
 /// One attempt to fetch one object, or to put it back. The pair is the motion's idempotency key.
 #[derive(

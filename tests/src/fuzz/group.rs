@@ -239,7 +239,7 @@ impl Group {
 
     /// Gives the arm an order to its motion stop.
     pub(super) fn order(&mut self, order: MotionOrder, given_ns: u64) {
-        let order = StopOrder { order, given_ns };
+        let order = StopOrder::new(order, Time(given_ns));
         self.to_arm.push(arm::In::StopOrder(order, Caller::named(b"a client")));
     }
 

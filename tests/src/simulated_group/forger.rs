@@ -9,6 +9,7 @@ use messages::{
 };
 use vocabulary::Rng;
 
+use service::Time;
 use service::stop_socket::{Caller, StopOrder};
 
 use super::SimulatedGroup;
@@ -223,7 +224,7 @@ fn to_arm(rng: &mut Rng, scene_key: u64) -> arm::In<'static> {
         0 => arm::In::Act(act(rng, scene_key).into()),
         _ => {
             let given_ns = COUNT_MAX << rng.below(11);
-            let order = StopOrder { order: MotionOrder::Resume, given_ns };
+            let order = StopOrder::new(MotionOrder::Resume, Time(given_ns));
             arm::In::StopOrder(order, Caller::named(b"a forger"))
         }
     }

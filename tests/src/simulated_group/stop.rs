@@ -18,8 +18,7 @@ impl RepeatedStop {
 
     /// Returns the order of this pass, if one is pending.
     pub fn order(&self) -> Option<arm::In<'static>> {
-        let given_ns = self.pending.as_ref()?.given().ns();
-        let order = StopOrder { order: MotionOrder::Stop, given_ns };
+        let order = StopOrder::new(MotionOrder::Stop, self.pending.as_ref()?.given());
         Some(arm::In::StopOrder(order, Caller::named(b"speech")))
     }
 

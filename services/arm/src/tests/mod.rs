@@ -29,7 +29,7 @@ use manipulation::{Joints, Limb};
 use messages::WireCode;
 use messages::{
     ActKind, ArmStatus, InteractionId, JointStates, MessageRef, MotionOrder, PickId, PickOutcome,
-    PickPhase, RobotAct, TrajectoryView, WorldView,
+    PickPhase, RobotAct, StopId, TrajectoryView, WorldView,
 };
 use robot::Robot;
 use scene::{ObjectId, Question};
@@ -336,7 +336,10 @@ impl Machine {
 
     /// Receives an order that was given at that time.
     fn order(&mut self, order: MotionOrder, given_ns: u64) {
-        let order = StopOrder { order, given_ns };
+        self.receive(StopOrder::new(order, Time(given_ns)));
+    }
+
+    fn receive(&mut self, order: StopOrder) {
         self.waiting.push(In::StopOrder(order, Caller::named(b"a client")));
     }
 

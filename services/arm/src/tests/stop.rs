@@ -87,6 +87,29 @@ fn arm_applies_newer_motion_orders_only() {
 }
 
 #[test]
+fn release_of_an_earlier_stop_leaves_the_later_one_in_force() {
+    let mut machine = Machine::new(config_at(10.0));
+    machine.motion(MotionOrder::Stop);
+    machine.run(0.05);
+    let seen = machine.status().stop();
+    machine.run(3.0);
+    machine.motion(MotionOrder::Stop);
+    machine.run(0.05);
+    let later = machine.status().stop();
+    assert!(later > seen, "{later} after {seen}");
+    machine.awaits_release();
+    for (stop, holds) in [(seen, true), (later, false)] {
+        let release = StopOrder::new(MotionOrder::Resume, machine.now);
+        machine.receive(StopOrder { stop, ..release });
+        machine.run(0.05);
+        assert_eq!(machine.node.state().stopped, holds, "release of {stop}");
+        let answer = machine.stop_states.last().unwrap();
+        assert_eq!((answer.stop, answer.stopped), (machine.status().stop(), holds));
+    }
+    assert_eq!(machine.status().stop(), StopId(0));
+}
+
+#[test]
 fn motion_stop_from_the_future_is_obeyed_and_can_be_released() {
     let mut machine = Machine::new(config());
     machine.order(MotionOrder::Stop, u64::MAX);

@@ -81,9 +81,11 @@ impl Motions {
         let order = if motion.stop { MotionOrder::Stop } else { MotionOrder::Resume };
         match &mut self.latest {
             // A stop that its user repeats is as late as before.
-            Some(latest) if latest.progress.order() == order => latest.progress.renew(now),
+            Some(latest) if latest.progress.order() == order => {
+                latest.progress.renew(now, motion.of)
+            }
             latest => {
-                let progress = Progress::new(order, now, default_patience(order));
+                let progress = Progress::new(order, now, default_patience(order)).of(motion.of);
                 *latest = Some(Latest { progress, late: None });
             }
         }
@@ -158,6 +160,7 @@ fn why_in_a_word(why: &StopError, group: Option<&GroupStatus>) -> &'static str {
 
 #[cfg(test)]
 mod tests {
+    use messages::StopId;
     use serde_json::Value as Json;
     use service::status::ServiceStatus;
     use service::stop_socket::StopState;
@@ -196,11 +199,12 @@ mod tests {
             at_rest: true,
             durable: true,
             inhibit,
+            stop: StopId(0),
         }
     }
 
     fn stops(hub: &Hub, viewer: ViewerId, motions: &mut Motions, stop: bool, ms: u64) {
-        motions.accept(Motion { viewer, id: Some(ms), stop }, hub, at(ms));
+        motions.accept(Motion { viewer, id: Some(ms), stop, of: StopId(0) }, hub, at(ms));
     }
 
     /// Takes in an answer of the arm.
@@ -258,6 +262,14 @@ mod tests {
         stops(&hub, viewer, &mut motions, false, 1);
         confirm(&mut motions, later(true), &hub, at(3));
         assert!(received(&mut frames)["error"].as_str().unwrap().contains("overruled"));
+
+        let release = Motion { viewer, id: Some(1), stop: false, of: StopId(6) };
+        motions.accept(release, &hub, at(9_000));
+        let held = |stop| StopState { in_force_ns: 0, stop: StopId(stop), ..answer(9_000, true) };
+        confirm(&mut motions, held(6), &hub, at(9_001));
+        assert!(motions.is_waiting(), "the arm is about to release it");
+        confirm(&mut motions, held(7), &hub, at(9_002));
+        assert!(received(&mut frames)["error"].as_str().unwrap().contains("another stop"));
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Commands of viewers to the main loop.
 
-use messages::{PromptId, RequestKey};
+use messages::{PromptId, RequestKey, StopId};
 use serde_json::Value as Json;
 use service::Time;
 use service::control::Watched;
@@ -71,4 +71,6 @@ pub struct Motion {
     pub id: Option<u64>,
     /// `true` latches the stop, `false` releases it.
     pub stop: bool,
+    /// The stop that a release is meant for, 0 for any.
+    pub of: StopId,
 }

@@ -14,6 +14,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use group_metrics::Metrics;
+use messages::StopId;
 use serde::Serialize;
 use service::worker_channel::DeviceSender;
 use service::{Span, Time};
@@ -208,7 +209,7 @@ impl Hub {
     pub fn ask(&self, viewer: ViewerId, id: u64, verb: Verb) -> Result<(), String> {
         let stops = matches!(&verb, Verb::Say(words) if language::is_stop(&words.text));
         if stops {
-            self.order(Motion { viewer, id: None, stop: true })?;
+            self.order(Motion { viewer, id: None, stop: true, of: StopId(0) })?;
         }
         let asked = self.ask_verb(viewer, id, verb);
         asked.map_err(
@@ -232,12 +233,15 @@ impl Hub {
         }
     }
 
-    /// Latches the motion stop for every viewer, releases it for those who may; the bridge answers.
-    pub fn motion(&self, viewer: ViewerId, id: u64, stop: bool) -> Result<(), String> {
-        if !stop {
-            self.must_release(viewer)?;
-        }
-        self.order(Motion { viewer, id: Some(id), stop })
+    /// Latches the motion stop for every viewer; the bridge answers.
+    pub fn stop(&self, viewer: ViewerId, id: u64) -> Result<(), String> {
+        self.order(Motion { viewer, id: Some(id), stop: true, of: StopId(0) })
+    }
+
+    /// Releases this stop, 0 for any, for those who may; the bridge answers.
+    pub fn release(&self, viewer: ViewerId, id: u64, of: StopId) -> Result<(), String> {
+        self.must_release(viewer)?;
+        self.order(Motion { viewer, id: Some(id), stop: false, of })
     }
 
     fn order(&self, motion: Motion) -> Result<(), String> {

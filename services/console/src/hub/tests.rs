@@ -43,9 +43,9 @@ fn hub_obeys_the_operator_but_lets_every_viewer_stop() {
     assert!(matches!(commands.take(), Some(Command::Do(_, 1, Verb::NotThat))));
     let refused = hub.ask(other, 2, Verb::NotThat).unwrap_err();
     assert_eq!(refused, "v1 is in control; help: request control first");
-    assert!(hub.motion(other, 3, false).is_err());
+    assert!(hub.release(other, 3, StopId(0)).is_err());
     assert!(commands.take().is_none() && motions.take().is_none());
-    hub.motion(other, 4, true).unwrap();
+    hub.stop(other, 4).unwrap();
     assert!(motions.take().is_some_and(|motion| motion.stop && motion.viewer == other));
     hub.answer(one, 9, Ok(Some(Answer::Accepted { seq: 7, waits_for: None, known: false })));
     assert_eq!(received(&mut to_one), json!({ "t": "done", "id": 9, "ok": true, "seq": 7 }));
@@ -55,25 +55,25 @@ fn hub_obeys_the_operator_but_lets_every_viewer_stop() {
 fn participant_of_a_study_stops_the_arm_and_cannot_release_it() {
     let Page { hub, motions, .. } = hub();
     let (viewer, _frames) = hub.join("", "a", Role::Operator, Time(0)).unwrap();
-    hub.motion(viewer, 1, false).unwrap();
-    assert!(motions.take().is_some_and(|motion| !motion.stop));
+    hub.release(viewer, 1, StopId(6)).unwrap();
+    assert!(motions.take().is_some_and(|motion| !motion.stop && motion.of == StopId(6)));
     hub.ask(viewer, 2, Verb::Study("find".to_owned(), json!({}))).unwrap();
-    let refused = hub.motion(viewer, 3, false).unwrap_err();
+    let refused = hub.release(viewer, 3, StopId(0)).unwrap_err();
     assert!(refused.contains("experimenter"), "{refused}");
-    hub.motion(viewer, 4, true).unwrap();
+    hub.stop(viewer, 4).unwrap();
     assert!(motions.take().is_some_and(|motion| motion.stop));
     // The experimenter's page, which has no control.
     let (experimenter, _more) = hub.join("", "b", Role::Viewer, Time(1)).unwrap();
-    hub.motion(experimenter, 5, false).unwrap();
+    hub.release(experimenter, 5, StopId(0)).unwrap();
     hub.leave(experimenter, Time(1));
     let (screen, _most) = hub.join("", "c", Role::Screen, Time(1)).unwrap();
-    assert!(hub.motion(screen, 6, false).is_err());
+    assert!(hub.release(screen, 6, StopId(0)).is_err());
     // The console's own page on the participant's device.
     let (other, _again) = hub.join("", "a", Role::Operator, Time(2)).unwrap();
-    hub.motion(other, 7, false).unwrap();
+    hub.release(other, 7, StopId(0)).unwrap();
     hub.leave(screen, Time(2));
     let (viewer, _frames) = hub.join("", "b", Role::Viewer, Time(2)).unwrap();
-    assert!(hub.motion(viewer, 8, false).is_err());
+    assert!(hub.release(viewer, 8, StopId(0)).is_err());
 }
 
 #[test]

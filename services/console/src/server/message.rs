@@ -1,6 +1,6 @@
 //! Messages of pages: text frames with JSON, checked key by key.
 
-use messages::PromptId;
+use messages::{PromptId, StopId};
 use serde_json::Value as Json;
 use service::Time;
 use vocabulary::PersonId;
@@ -42,8 +42,10 @@ pub enum Message {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Do {
     Ask(Verb),
-    /// Stop the arm, or release the stop.
-    Motion(bool),
+    /// Stop the arm.
+    Stop,
+    /// Release this stop, 0 for any.
+    Release(StopId),
     Take,
     Give(ViewerId),
     Keep,
@@ -109,8 +111,8 @@ fn what(json: &Json, now: Time) -> Result<Do, String> {
         "say" => Do::Ask(Verb::Say(words(json, now)?)),
         "not_that" => Do::Ask(Verb::NotThat),
         "start_over" => Do::Ask(Verb::StartOver),
-        "stop" => Do::Motion(true),
-        "resume" => Do::Motion(false),
+        "stop" => Do::Stop,
+        "resume" => Do::Release(StopId(number(json, "stop", "a stop, as in `arm`")?)),
         "take_control" => Do::Take,
         "keep_control" => Do::Keep,
         "give_control" => {
@@ -141,13 +143,17 @@ fn words(json: &Json, now: Time) -> Result<Words, String> {
     {
         return Err("ended_ms: lies before began_ms".to_owned());
     }
-    let seen = match &json["seen"] {
-        Json::Null => 0,
-        seen => seen.as_u64().ok_or("seen: expected the number of a prompt")?,
-    };
-    let seen = PromptId(seen);
+    let seen = PromptId(number(json, "seen", "a prompt")?);
     let alternatives = alternatives(json)?;
     Ok(Words { text, alternatives, spoken, began, ended, seen, from: person(json)?, key: None })
+}
+
+/// Returns the number of something that the page was shown, 0 if it names none.
+fn number(json: &Json, key: &str, what: &str) -> Result<u64, String> {
+    match &json[key] {
+        Json::Null => Ok(0),
+        number => number.as_u64().ok_or_else(|| format!("{key}: expected the number of {what}")),
+    }
 }
 
 /// Returns the person who speaks; a page without a name speaks for an unnamed user.
@@ -272,6 +278,11 @@ mod tests {
         assert!(say("from", json!(3)).contains("from"));
         assert!(say("source", json!("radio")).contains("radio"));
         assert!(say("alternatives", json!([{"text": "b", "weight": 0}])).contains("weight"));
+        let resume = |stop: Json| json!({"t": "do", "id": 3, "do": "resume", "stop": stop});
+        assert!(wrong(resume(json!("7"))).contains("stop: expected the number of a stop"));
+        for (stop, named) in [(json!(null), 0), (json!(7), 7)] {
+            assert_eq!(read(resume(stop)), Ok(Message::Do(3, Do::Release(StopId(named)))));
+        }
         assert!(wrong(json!({"t": "do", "id": 3, "do": "dance"})).contains("dance"));
         assert!(
             wrong(json!({"t": "do", "id": 3, "do": "give_control", "viewer": 1})).contains("v3")

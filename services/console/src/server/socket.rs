@@ -265,7 +265,8 @@ fn text_frame(text: &str, viewer: ViewerId, hub: &Hub) {
             // Others than control are answered by those who carry them out.
             let passed_on = match what {
                 Do::Ask(verb) => hub.ask(viewer, id, verb),
-                Do::Motion(stop) => hub.motion(viewer, id, stop),
+                Do::Stop => hub.stop(viewer, id),
+                Do::Release(stop) => hub.release(viewer, id, stop),
                 Do::Restart(service) => hub.restart(viewer, id, service),
                 Do::Take => return hub.answer(viewer, id, hub.take_control(viewer, now)),
                 Do::Give(to) => return hub.answer(viewer, id, hub.give_control(viewer, to)),

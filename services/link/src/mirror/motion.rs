@@ -131,13 +131,12 @@ impl Worker {
     }
 
     fn on_order(&mut self, order: &StopOrder, caller: Caller) {
-        let StopOrder { order, given_ns } = *order;
-        let now = clock::now();
-        match self.orders.take((order, given_ns), self.seen, random_key().0, now) {
+        let StopOrder { given_ns, .. } = *order;
+        match self.orders.take(order, self.seen, random_key().0, clock::now()) {
             Ok(Some(state)) => self.listener.answer(&caller, &state),
             Ok(None) => {
                 if self.caller.as_ref().is_none_or(|(given, _)| *given != given_ns) {
-                    tracing::info!(?order, "motion stop, to the robot");
+                    tracing::info!(order = ?order.order, "motion stop, to the robot");
                 }
                 self.caller = Some((given_ns, caller));
             }

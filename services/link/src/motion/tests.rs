@@ -10,7 +10,8 @@ fn stop(key: u8) -> Request {
 }
 
 fn release(key: u8, at_ms: u64, in_force: Time) -> Request {
-    let seen = Seen { at_ns: at(at_ms).ns(), in_force_ns: in_force.ns(), stopped: true };
+    let stop = StopId(in_force.ns());
+    let seen = Seen { at_ns: at(at_ms).ns(), in_force_ns: in_force.ns(), stopped: true, stop };
     Request { key: [key; 16], order: Order::Release(seen) }
 }
 
@@ -98,6 +99,7 @@ fn stop_is_repeated_at_the_robot_without_the_network() {
         at_rest: true,
         durable: true,
         inhibit: MotionInhibit::None,
+        stop: StopId(0),
     };
     standing.on_answer(state, at(3_600_101));
     standing.advance(&client, at(3_600_101));
@@ -129,12 +131,12 @@ fn release_that_came_too_soon_stays_refused_however_often_it_is_repeated() {
 #[test]
 fn request_is_repeated_under_one_key_while_its_client_wants_it() {
     let mut orders = Orders::default();
-    let given = at(50).ns();
+    let given = StopOrder::new(MotionOrder::Stop, at(50));
     let mut sent = Vec::new();
     for ms in (0..3_000).step_by(10) {
         if ms < 1_000 {
             let key = [ms as u8; 16];
-            let taken = orders.take((MotionOrder::Stop, given), None, key, at(ms));
+            let taken = orders.take(&given, None, key, at(ms));
             assert_eq!(taken, Ok(None));
         }
         sent.extend(orders.due(None, at(ms)).map(|(request, way)| (ms, request.key[0], way)));
@@ -148,7 +150,7 @@ fn request_is_repeated_under_one_key_while_its_client_wants_it() {
 fn answers_come_back_in_the_clients_time() {
     let mut orders = Orders::default();
     let given = at(50).ns();
-    orders.take((MotionOrder::Stop, given), None, [1; 16], at(50)).unwrap();
+    orders.take(&StopOrder::new(MotionOrder::Stop, at(50)), None, [1; 16], at(50)).unwrap();
     let state = StopState {
         given_ns: 900,
         in_force_ns: 900,
@@ -156,6 +158,7 @@ fn answers_come_back_in_the_clients_time() {
         at_rest: false,
         durable: false,
         inhibit: MotionInhibit::None,
+        stop: StopId(0),
     };
     assert_eq!(orders.on_answer([2; 16], &Answer::State(Stamped(state))), None);
     let here = orders.on_answer([1; 16], &Answer::State(Stamped(state))).unwrap();
@@ -171,12 +174,32 @@ fn answers_come_back_in_the_clients_time() {
 #[test]
 fn release_needs_a_state_and_keeps_to_the_stop_that_was_seen() {
     let mut orders = Orders::default();
-    let resume = (MotionOrder::Resume, at(50).ns());
-    assert!(orders.take(resume, None, [1; 16], at(50)).is_err());
-    let seen = Seen { at_ns: 10, in_force_ns: 5, stopped: true };
-    orders.take(resume, Some(seen), [1; 16], at(50)).unwrap();
+    let resume = StopOrder::new(MotionOrder::Resume, at(50));
+    assert!(orders.take(&resume, None, [1; 16], at(50)).is_err());
+    let seen = Seen { at_ns: 10, in_force_ns: 5, stopped: true, stop: StopId(5) };
+    orders.take(&resume, Some(seen), [1; 16], at(50)).unwrap();
     let newer = Seen { at_ns: 20, ..seen };
     assert_eq!(orders.due(Some(newer), at(50)).unwrap().0.order, Order::Release(newer));
-    let other_stop = Seen { at_ns: 30, in_force_ns: 25, stopped: true };
+    let other_stop = Seen { at_ns: 30, in_force_ns: 25, stopped: true, stop: StopId(25) };
     assert_eq!(orders.due(Some(other_stop), at(400)).unwrap().0.order, Order::Release(newer));
+    // The person saw an earlier stop than the mirror did: the arm is to refuse the release.
+    let late = StopOrder { stop: seen.stop, ..StopOrder::new(MotionOrder::Resume, at(500)) };
+    orders.take(&late, Some(other_stop), [2; 16], at(500)).unwrap();
+    let named = Seen { stop: seen.stop, ..other_stop };
+    assert_eq!(orders.due(Some(other_stop), at(500)).unwrap().0.order, Order::Release(named));
+    let newest = Seen { at_ns: 40, ..other_stop };
+    let named = Seen { at_ns: 40, ..named };
+    assert_eq!(orders.due(Some(newest), at(510)).unwrap().0.order, Order::Release(named));
+}
+
+#[test]
+fn question_for_the_state_is_answered_here_and_orders_nothing() {
+    let mut orders = Orders::default();
+    assert_eq!(orders.take(&LOOK, None, [1; 16], at(900)), Ok(None));
+    let seen =
+        Seen { at_ns: at(500).ns(), in_force_ns: at(200).ns(), stopped: true, stop: StopId(7) };
+    let state = orders.take(&LOOK, Some(seen), [1; 16], at(900)).unwrap().unwrap();
+    assert_eq!((state.given_ns, state.stop, state.stopped), (0, StopId(7), true));
+    assert_eq!(state.in_force_ns, at(600).ns(), "as long ago as on the robot");
+    assert_eq!(orders.due(Some(seen), at(900)), None);
 }

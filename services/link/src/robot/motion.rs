@@ -3,16 +3,16 @@
 use std::sync::mpsc::SyncSender;
 use std::thread;
 
-use messages::MotionOrder;
+use messages::{MotionOrder, StopId};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use service::group::GroupPaths;
-use service::stop_socket::{StopClient, StopState};
+use service::stop_socket::{LOOK, StopClient, StopOrder, StopState};
 use service::worker_channel::{self, DeviceReceiver, DeviceSender};
 use service::{Span, Time, clock};
 use zenoh::query::Query;
 
 use super::senders::{Answer, Outlet};
-use crate::motion::{self, Register, Request, Seen, Stamped, StandingStop};
+use crate::motion::{self, Order, Register, Request, Seen, Stamped, StandingStop};
 use crate::names::Call;
 
 /// Interval of repeating an order to the arm while its request waits; a stop continues after.
@@ -49,8 +49,7 @@ pub(super) fn start(
 /// A request whose order the arm has not carried out yet.
 struct Waiting {
     query: Query,
-    order: MotionOrder,
-    stamp: Time,
+    order: StopOrder,
     since: Time,
     sent: Option<Time>,
     state: Option<StopState>,
@@ -101,13 +100,18 @@ impl Worker {
             Ok((order, stamp)) => {
                 tracing::info!(?order, stamp = stamp.ns(), "motion stop, over the link");
                 self.standing.take(order, stamp);
+                let stop = match request.order {
+                    Order::Stop => StopId(0),
+                    Order::Release(seen) => seen.stop,
+                };
+                let order = StopOrder { stop, ..StopOrder::new(order, stamp) };
                 if self.waiting.len() >= REQUESTS_MAX {
                     // Carried out without an answer: it is asked again.
-                    let _ = self.stop_client.send(order, stamp);
+                    let _ = self.stop_client.send(&order);
                     return;
                 }
                 let (sent, state) = (None, None);
-                self.waiting.push(Waiting { query, order, stamp, since: now, sent, state });
+                self.waiting.push(Waiting { query, order, since: now, sent, state });
             }
             Err(why) => {
                 tracing::warn!(why, "release refused");
@@ -118,18 +122,17 @@ impl Worker {
 
     fn advance(&mut self, now: Time) {
         self.standing.advance(&self.stop_client, now);
-        let is_own = |waiting: &&mut Waiting| !self.standing.repeats(waiting.stamp);
+        let is_own = |waiting: &&mut Waiting| !self.standing.repeats(Time(waiting.order.given_ns));
         for waiting in self.waiting.iter_mut().filter(is_own) {
             if waiting.sent.is_none_or(|sent| now >= sent + RESEND_EVERY) {
                 waiting.sent = Some(now);
                 // An arm that is absent is asked again.
-                let _ = self.stop_client.send(waiting.order, waiting.stamp);
+                let _ = self.stop_client.send(&waiting.order);
             }
         }
-        // A release that is older than every order is answered and changes nothing.
         if self.states.is_motion_watched() && now >= self.looked + LOOK_EVERY {
             self.looked = now;
-            let _ = self.stop_client.send(MotionOrder::Resume, Time(0));
+            let _ = self.stop_client.send(&LOOK);
         }
         while let Some(state) = self.stop_client.take() {
             self.on_state(state);
@@ -140,14 +143,14 @@ impl Worker {
     fn on_state(&mut self, state: StopState) {
         self.standing.on_answer(state, clock::now());
         for waiting in &mut self.waiting {
-            if waiting.stamp.ns() == state.given_ns {
+            if waiting.order.given_ns == state.given_ns {
                 waiting.state = Some(state);
             }
         }
         if self.states.is_motion_watched() {
             let at_ns = clock::now().ns();
-            let StopState { in_force_ns, stopped, .. } = state;
-            let seen = Seen { at_ns, in_force_ns, stopped };
+            let StopState { in_force_ns, stopped, stop, .. } = state;
+            let seen = Seen { at_ns, in_force_ns, stopped, stop };
             self.states.motion(postcard::to_stdvec(&seen).unwrap_or_default());
         }
     }
@@ -156,9 +159,9 @@ impl Worker {
     fn finish(&mut self, now: Time) {
         let is_over = |waiting: &mut Waiting| {
             let is_late = now >= waiting.since + ANSWER_WITHIN;
-            let wants_stop = waiting.order == MotionOrder::Stop;
+            let wants_stop = waiting.order.order == MotionOrder::Stop;
             let is_done = waiting.state.is_some_and(|state| {
-                let is_overruled = state.in_force_ns > waiting.stamp.ns();
+                let is_overruled = state.in_force_ns > waiting.order.given_ns;
                 let is_carried_out = match wants_stop {
                     true => state.stopped && state.at_rest && state.durable,
                     false => !state.stopped,

@@ -90,19 +90,6 @@ pub struct ConsoleArgs {
     pub view: Option<PathBuf>,
 }
 
-/// Arguments of `logs`.
-#[derive(Debug, Args)]
-pub struct LogsArgs {
-    /// Name of a service, or `supervisor` [default: all].
-    pub service: Option<String>,
-    /// Follow the logs.
-    #[arg(long, short)]
-    pub follow: bool,
-    /// Number of lines from the end.
-    #[arg(long, short = 'n', value_name = "N", default_value_t = 40)]
-    pub tail: usize,
-}
-
 /// Arguments of `reload`.
 #[derive(Debug, Args)]
 pub struct ReloadArgs {

@@ -28,6 +28,10 @@ pub struct SayArgs {
     /// Name of the person who speaks, at most 64 bytes: the robot learns from deliveries how they speak (`whichone people`).
     #[arg(long, value_name = "NAME", default_value = "", hide_default_value = true, value_parser = person)]
     pub from: PersonId,
+    /// Number of the robot's line that the person was shown last, `prompt` of `status --json`: the words answer that
+    /// question and no later one.
+    #[arg(long, value_name = "PROMPT")]
+    pub seen: Option<u64>,
     /// Confidence of each word of TEXT, 0 to 1, separated by commas.
     #[arg(long, value_name = "P,P,…", value_delimiter = ',')]
     pub confidence: Vec<f32>,

@@ -132,6 +132,7 @@ fn report_timeout(conversation: &Conversation, started: Instant, out: &mut Outpu
             "questions": questions,
             "seconds": seconds,
             "outcome": "timeout",
+            "prompt": conversation.latest().prompt(),
         }))?;
     } else {
         let after = words::time(seconds);

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use command_line::Outcome;
 use command_line::interrupt::Interrupt;
 use command_line::output::{Ink, Output, note};
-use messages::{MotionOrder, PromptId, Receipt, ReceiptStatus};
+use messages::{PromptId, Receipt, ReceiptStatus, StopId};
 use scene::ObjectId;
 use serde_json::json;
 use service::clock;
@@ -84,12 +84,14 @@ struct Chat<'a, 'b> {
     ended: Option<u64>,
     orders: MotionOrders,
     guard: ResumeGuard,
+    /// The stop in force, as the user was told.
+    stop: StopId,
 }
 
 impl<'a, 'b> Chat<'a, 'b> {
     fn new(conversation: Conversation, orders: MotionOrders, out: &'a mut Output<'b>) -> Self {
-        let guard = ResumeGuard::default();
-        Self { conversation, out, printed: None, ended: None, orders, guard }
+        let (guard, stop) = (ResumeGuard::default(), StopId(0));
+        Self { conversation, out, printed: None, ended: None, orders, guard, stop }
     }
 
     fn run(&mut self, paths: &GroupPaths, interrupt: &Interrupt) -> Outcome {
@@ -119,13 +121,13 @@ impl<'a, 'b> Chat<'a, 'b> {
     fn on_line(&mut self, words: &str) -> Result<(), Failure> {
         match words {
             "resume" => self.resume(),
-            "go on" | "continue" if self.is_stopped() => {
+            "go on" | "continue" if self.stop > StopId(0) => {
                 note("the arm is stopped; to let it move, type resume");
             }
             words => {
                 if language::is_stop(words) {
                     self.guard.on_stop(clock::now());
-                    self.orders.give(MotionOrder::Stop);
+                    self.orders.stop();
                 }
                 let seen = self.printed.map_or(0, |(prompt, _)| prompt);
                 self.conversation.say(words, PromptId(seen))?;
@@ -137,7 +139,7 @@ impl<'a, 'b> Chat<'a, 'b> {
     /// Releases the motion stop. The typed word is its own confirmation, unless it comes right after a stop.
     fn resume(&mut self) {
         match self.guard.may_resume(clock::now()) {
-            true => self.orders.give(MotionOrder::Resume),
+            true => self.orders.release(self.stop),
             false => note("stopped just now; type resume 2 s after the latest stop, or later"),
         }
     }
@@ -170,6 +172,12 @@ impl<'a, 'b> Chat<'a, 'b> {
                 self.refused(&receipt)?;
             }
         }
+        let stop = self.conversation.latest().arm.map_or(self.stop, |arm| arm.stop());
+        // A stop of one's own has its answer.
+        if stop > self.stop && self.guard.may_resume(clock::now()) {
+            note("the arm is stopped; to let it move, type resume");
+        }
+        self.stop = stop;
         let words = self.conversation.latest().presented_line();
         let words = words.map(|(said, text)| (said, text.to_owned()));
         if let Some((said, text)) = words
@@ -221,11 +229,6 @@ impl<'a, 'b> Chat<'a, 'b> {
         }
         let sentence = await_pick::sentence(&last);
         self.out.line(self.out.style().paint(Ink::Dim, format!("({sentence})")))
-    }
-
-    /// Returns whether the motion stop is latched.
-    fn is_stopped(&self) -> bool {
-        self.conversation.latest().arm.is_some_and(|arm| arm.stopped != 0)
     }
 
     /// Waits, at the end of the input, until the interaction ends or a question is left unanswered.

@@ -197,6 +197,13 @@ impl Conversation {
     }
 }
 
+/// Returns what a running group states at the moment.
+pub(super) fn glance(paths: &GroupPaths) -> Option<Latest> {
+    let mut conversation = Conversation::join(paths).ok()?;
+    conversation.first_look().ok()?;
+    Some(conversation.latest)
+}
+
 fn ended(paths: &GroupPaths) -> Failure {
     Failure::new(Exit::NotReached, format!("group {} has ended", paths.name()))
 }

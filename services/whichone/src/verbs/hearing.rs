@@ -1,31 +1,10 @@
 //! Quality of hearing, as text and JSON.
 
-use std::time::{Duration, Instant};
-
 use command_line::output::{Ink, Style};
-use messages::{EarState, Hearing, MicrophoneState, topics};
-use service::client::{Client, Polling};
-use service::group::GroupPaths;
-
-/// Time limit for a message.
-const TIMEOUT: Duration = Duration::from_secs(1);
+use messages::{EarState, Hearing, MicrophoneState};
 
 /// Signal-to-noise ratio, decibels, below which recognition is poor; it is good from 20 on.
 const SNR_MIN_DB: f32 = 15.0;
-
-/// Returns the quality of hearing of a running group, if its speech service publishes it.
-pub(super) fn look(paths: &GroupPaths) -> Option<Hearing> {
-    let client = Client::join(paths).ok()?;
-    let hearing = client.bus().reader::<Hearing>(&topics::HEARING).ok()?;
-    let (until, mut polling) = (Instant::now() + TIMEOUT, Polling::default());
-    loop {
-        match hearing.latest() {
-            Ok(Some(hearing)) => return Some(hearing),
-            Ok(None) if Instant::now() < until => polling.pause(),
-            Ok(None) | Err(_) => return None,
-        }
-    }
-}
 
 /// Returns help where the noise is too loud.
 pub(super) fn noise(snr_db: f32) -> Option<String> {

@@ -7,15 +7,15 @@ use std::time::Duration;
 use command_line::Outcome;
 use command_line::interrupt::Interrupt;
 use command_line::output::{Output, note};
-use messages::{MotionOrder, Service};
+use messages::{MotionOrder, Service, StopId};
 use serde::Serialize;
-use service::Span;
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 use service::stop_socket::{self, StopError, StopState, default_patience};
+use service::{Span, Time, clock};
 
 use super::availability::Availability;
-use super::up;
+use super::{up, words};
 
 mod orders;
 
@@ -23,6 +23,9 @@ pub(super) use orders::{MotionOrders, News, ResumeGuard};
 
 /// The service that carries out the orders.
 const ARM: &[Service] = &[Service::Arm];
+
+/// Time in which an arm that runs states which stop is in force.
+const LOOK_WITHIN: Span = Span::from_ms(250);
 
 /// Note on a stop that the disk does not hold yet.
 const NOT_DURABLE: &str = "the stop is not on the disk yet: it holds as long as the arm's service runs; \
@@ -54,10 +57,16 @@ pub(super) fn motion(
     let patience = timeout.map(|timeout| Span::from_s(timeout.as_secs_f64()));
     let patience = patience.or(default_patience(order));
     let mut warnings = Warnings::new(paths);
-    let state = stop_socket::give(paths, order, patience, &mut |why| {
+    let keep_trying = &mut |why: Option<StopError>| {
         why.into_iter().for_each(|why| note(warnings.line(order, &why)));
         !interrupt.is_requested()
-    });
+    };
+    let state = match order {
+        MotionOrder::Stop => stop_socket::give(paths, order, patience, keep_trying),
+        MotionOrder::Resume => {
+            stop_socket::release(paths, stop_in_force(paths), patience, keep_trying)
+        }
+    };
     let state = state.map_err(|error| {
         if order == MotionOrder::Stop && stop_socket::is_kept(paths) {
             note(KEPT);
@@ -76,6 +85,18 @@ pub(super) fn motion(
         note(NOT_DURABLE);
     }
     Ok(Exit::Ok)
+}
+
+/// Returns the stop in force, and notes it for the user. If the arm does not answer, that is any stop: the release
+/// itself reports why.
+fn stop_in_force(paths: &GroupPaths) -> StopId {
+    let Some(state) = stop_socket::look(paths, LOOK_WITHIN) else { return StopId(0) };
+    // The age of one from before the machine's start is unknown.
+    if state.stop > StopId(0) && state.in_force_ns > 0 {
+        let age = words::time(clock::now().since(Time(state.in_force_ns)).s());
+        note(format_args!("releasing the stop that was given {age} ago"));
+    }
+    state.stop
 }
 
 /// Warnings about an order that is not confirmed, with the supervisor's reason as soon as it has answered. It is

@@ -6,8 +6,8 @@ use command_line::Outcome;
 use command_line::interrupt::Interrupt;
 use command_line::output::{Ink, Output, note};
 use messages::{
-    GateVerdict, Hypothesis, MotionOrder, Receipt, ReceiptStatus, SecondState, Service, Sound,
-    Source, WireError,
+    GateVerdict, Hypothesis, PromptId, Receipt, ReceiptStatus, SecondState, Service, Sound, Source,
+    WireError,
 };
 use serde::Serialize;
 use service::client::{Client, ClientError, submit};
@@ -20,6 +20,7 @@ use service::{Span, Time};
 use vocabulary::PersonId;
 
 use super::availability::{AFTER_SPEECH, Availability, Lookout};
+use super::conversation::glance;
 use super::hearing;
 use super::motion::MotionOrders;
 use crate::cli::{PointArgs, SayArgs, TalkArgs};
@@ -38,17 +39,33 @@ pub(super) fn say(paths: &GroupPaths, args: &SayArgs, out: &mut Output<'_>) -> O
         true => (transcript(args)?, when(args)?),
         false => (Sound::Text(text.clone()), (clock::now(), Time(0))),
     };
-    let said = Said { sound, said, from: &args.from };
-    if !language::is_stop(&text) {
+    let is_stop = language::is_stop(&text);
+    let seen = PromptId(args.seen.unwrap_or_default());
+    // Nothing may keep a stop back.
+    if seen > PromptId(0) && !is_stop {
+        must_be_said(paths, seen)?;
+    }
+    let said = Said { sound, said, from: &args.from, seen };
+    if !is_stop {
         return give_said(paths, &said, args.timeout, None, out);
     }
     // The stop needs no speech service: it goes to the arm at once, on its own path, and outlives the words.
     let interrupt = Interrupt::listen()?;
     let orders = MotionOrders::open(paths)?;
-    orders.give(MotionOrder::Stop);
+    orders.stop();
     orders.await_news(STOPS_WITHIN);
     let given = give_said(paths, &said, args.timeout, Some(&interrupt), out);
     orders.finish(&interrupt, Some(args.timeout), given)
+}
+
+/// Fails for a prompt that is not known to have been said: the speech service would wait for it.
+fn must_be_said(paths: &GroupPaths, seen: PromptId) -> Result<(), Failure> {
+    let Some(latest) = glance(paths).filter(|it| it.view.is_some()) else { return Ok(()) };
+    if seen <= latest.prompt() {
+        return Ok(());
+    }
+    let what = format!("--seen: expected a line that was said, up to {}", latest.prompt());
+    Err(Failure::new(Exit::Usage, format!("{what}, found {seen}; help: leave it out")))
 }
 
 /// When it was said.
@@ -101,26 +118,27 @@ pub(super) fn give(
     out: &mut Output<'_>,
 ) -> Outcome {
     let (said, from) = ((clock::now(), Time(0)), &PersonId::default());
-    give_said(paths, &Said { sound, said, from }, timeout, None, out)
+    give_said(paths, &Said { sound, said, from, seen: PromptId(0) }, timeout, None, out)
 }
 
-/// What was said, when it began and ended, and by whom.
+/// What was said, when it began and ended, by whom, and the line that they were shown last, 0 if unknown.
 struct Said<'a> {
     sound: Sound,
     said: (Time, Time),
     from: &'a PersonId,
+    seen: PromptId,
 }
 
 fn give_said(
     paths: &GroupPaths,
-    Said { sound, said, from }: &Said<'_>,
+    Said { sound, said, from, seen }: &Said<'_>,
     timeout: Duration,
     interrupt: Option<&Interrupt>,
     out: &mut Output<'_>,
 ) -> Outcome {
     let patience = Span::from_s(timeout.as_secs_f64());
-    let mut submission =
-        Submission::new(sound.clone(), *said, clock::now(), patience).by(from.as_str());
+    let submission = Submission::new(sound.clone(), *said, clock::now(), patience);
+    let mut submission = submission.after(*seen).by(from.as_str());
     // The speech service alone answers, and keeps what the others will need.
     let mut lookout = Lookout::of(&[Service::Speech]).with_shortages();
     loop {

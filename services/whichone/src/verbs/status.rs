@@ -2,6 +2,7 @@
 
 use command_line::Outcome;
 use command_line::output::{Ink, Output, Style, table};
+use messages::PromptId;
 use serde::Serialize;
 use service::console_link;
 use service::control::CallError;
@@ -11,6 +12,7 @@ use service::launch;
 use service::status::{GroupState, GroupStatus, ServiceState, ServiceStatus};
 use service::view::HearingView;
 
+use super::conversation::glance;
 use super::operate::status_of;
 use super::{hearing, words};
 
@@ -21,12 +23,14 @@ pub(super) fn status(paths: &GroupPaths, out: &mut Output<'_>) -> Outcome {
         Err(CallError::NoGroup(_)) => return down(paths, out),
         Err(other) => return Err(other.into()),
     };
-    let hearing = hearing::look(paths);
+    let latest = glance(paths).unwrap_or_default();
+    let hearing = latest.hearing;
     if out.is_json() {
         out.json(&Printed {
             status: &status,
             console: console_link::address(paths),
             hearing: hearing.as_ref().map(HearingView::new),
+            prompt: latest.view.is_some().then(|| latest.prompt()),
         })?;
     } else {
         let mut lines = lines(&status, out.style());
@@ -47,6 +51,8 @@ struct Printed<'a> {
     status: &'a GroupStatus,
     console: Option<String>,
     hearing: Option<HearingView<'a>>,
+    /// The robot's latest line, which `say --seen` names.
+    prompt: Option<PromptId>,
 }
 
 /// A group that is not running yet or any more, with `--json`.

@@ -15,6 +15,7 @@ use service::exit::{Exit, Failure};
 use super::{diff, examine, load, read};
 use crate::args::ScenePlaceArgs;
 use crate::check;
+use crate::progress::Progress;
 
 /// Longest search for all places: where robot and scene do not fit, each look takes long.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -44,9 +45,11 @@ pub(super) struct Places {
 pub(super) fn place(args: &ScenePlaceArgs, out: &mut Output<'_>) -> Outcome {
     let (path, file) = read(&args.file, &args.config)?;
     let mut edit = SceneEdit::parse(&file.label, &file.text)?;
-    let Places { placed, unplaced } = places(&mut edit, &file.label, &args.config)?;
+    let progress = Progress::start(out);
+    let Places { placed, unplaced } = places(&mut edit, &file.label, &args.config, &progress)?;
     let text = edit.text();
-    let checked = load(&args.config, TextFile::new(&*file.label, &*text))?.verdict();
+    let checked = load(&args.config, TextFile::new(&*file.label, &*text), &progress)?.verdict();
+    drop(progress);
     if args.write && !placed.is_empty() {
         safe_files::write_output(&path, text.as_bytes())
             .map_err(|error| Failure::file(&path, &error))?;
@@ -95,6 +98,7 @@ pub(super) fn places(
     edit: &mut SceneEdit,
     label: &str,
     config: &ConfigArgs,
+    progress: &Progress,
 ) -> Result<Places, Failure> {
     let mut with_all = SceneEdit::parse(label, &edit.text())?;
     let added = with_all.add_places();
@@ -108,7 +112,7 @@ pub(super) fn places(
         .unzip();
     let new: Vec<usize> = (0..numbers.len()).filter(|&i| added.contains(&numbers[i])).collect();
     let mut arrangement = Arrangement::new(&setup, poses.clone()).until(Instant::now() + PATIENCE);
-    let changed = arrangement.arrange(&new);
+    let changed = arrangement.arrange(&new, &|line| progress.at(line));
     let unplaced = new.iter().filter(|i| !changed.contains(i)).map(|&i| {
         let object = objects[numbers[i]].name.clone();
         Unplaced { object, why: arrangement.why_unplaced(i) }

@@ -1,7 +1,9 @@
 //! A bar that fills, on a terminal's standard error and nowhere else.
 
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, IsTerminal};
 use std::time::{Duration, Instant};
+
+use crate::progress::draw;
 
 /// Progress of a long run.
 pub(super) struct Progress {
@@ -45,11 +47,6 @@ impl Drop for Progress {
             draw("");
         }
     }
-}
-
-fn draw(text: &str) {
-    // A closed standard error is not an error here.
-    let _ = write!(io::stderr(), "\r\x1b[K{text}").and_then(|()| io::stderr().flush());
 }
 
 fn bar(done: usize, whole: usize, passed: Duration) -> String {

@@ -2,7 +2,7 @@
 
 use crate::schema::wire_struct;
 use crate::wire::{Code, wire_codes, wire_enum};
-use crate::{ActId, InteractionId, PickId, PickOutcome, PickPhase, Task};
+use crate::{ActId, InteractionId, PickId, PickOutcome, PickPhase, StopId, Task};
 use iceoryx2::prelude::ZeroCopySend;
 
 /// Joints of a joint state: 7 a limb, head pan and nod, torso.
@@ -79,6 +79,8 @@ wire_struct! {
         reserved: [u8; 2],
         /// Expected seconds until the pick is done, 0 where none runs.
         remaining_s: f64,
+        /// [`StopId`] of the motion stop in force, 0 for none: a release names it.
+        stop: u64,
     }
 }
 
@@ -86,6 +88,11 @@ impl ArmStatus {
     /// The latest pick.
     pub fn pick(&self) -> PickId {
         PickId { interaction: InteractionId(self.interaction), attempt: self.attempt }
+    }
+
+    /// The motion stop in force.
+    pub fn stop(&self) -> StopId {
+        StopId(self.stop)
     }
 
     /// The pointing question that the gripper aims at.

@@ -86,7 +86,7 @@ impl KeptStop {
 
     /// The order.
     pub fn order(&self) -> StopOrder {
-        StopOrder { order: MotionOrder::Stop, given_ns: self.progress.given().ns() }
+        StopOrder::new(MotionOrder::Stop, self.progress.given())
     }
 
     /// Repeats the stop on the arm's socket if due. Returns true once it is carried out, or

@@ -3,9 +3,9 @@
 use std::io;
 use std::thread;
 
-use messages::{MotionInhibit, MotionOrder};
+use messages::{MotionInhibit, MotionOrder, StopId};
 
-use super::{RESUME_AFTER, StopClient, StopError, StopState, kept};
+use super::{RESUME_AFTER, StopClient, StopError, StopOrder, StopState, kept};
 use crate::{Span, Time};
 
 /// Interval at which an order is repeated.
@@ -35,6 +35,8 @@ pub fn default_patience(order: MotionOrder) -> Option<Span> {
 #[derive(Debug)]
 pub struct Progress {
     order: MotionOrder,
+    /// The stop that a release is meant for, 0 for any.
+    stop: StopId,
     given: Time,
     /// Time at which it was given first.
     since: Time,
@@ -61,6 +63,7 @@ impl Progress {
     pub fn new(order: MotionOrder, given: Time, patience: impl Into<Option<Span>>) -> Self {
         Self {
             order,
+            stop: StopId(0),
             given,
             since: given,
             patience: patience.into(),
@@ -73,6 +76,11 @@ impl Progress {
             rests_since: None,
             unheard_since: None,
         }
+    }
+
+    /// Names the stop that a release is meant for; 0 stands for any.
+    pub fn of(self, stop: StopId) -> Self {
+        Self { stop, ..self }
     }
 
     /// The order.
@@ -90,10 +98,10 @@ impl Progress {
         self.since
     }
 
-    /// Notes that the same order is given again, at `given`. Deadline and warnings count from the
-    /// first time, so that a flood of orders puts off neither.
-    pub fn renew(&mut self, given: Time) {
-        self.given = given;
+    /// Notes that the same order is given again, at `given`, for `stop`. Deadline and warnings count
+    /// from the first time, so that a flood of orders puts off neither.
+    pub fn renew(&mut self, given: Time, stop: StopId) {
+        (self.given, self.stop) = (given, stop);
         self.sent = None;
         self.forget_answers();
     }
@@ -101,7 +109,8 @@ impl Progress {
     /// Repeats the order if due, and processes the answers.
     pub fn advance(&mut self, client: &StopClient, now: Time) {
         if self.due(now) {
-            self.on_sent(&client.send(self.order, self.given));
+            let order = StopOrder { stop: self.stop, ..StopOrder::new(self.order, self.given) };
+            self.on_sent(&client.send(&order));
         }
         while let Some(state) = client.take() {
             self.on_answer(state, now);
@@ -196,6 +205,10 @@ impl Progress {
         });
         if let Some(state) = done {
             return Some(Ok(state));
+        }
+        let is_other = |state: StopState| state.stop > StopId(0) && state.stop != self.stop;
+        if self.stop > StopId(0) && state.is_some_and(is_other) {
+            return Some(Err(StopError::OtherStop));
         }
         if state.is_some_and(|state| self.is_overruled(&state)) {
             return Some(Err(StopError::Overruled));

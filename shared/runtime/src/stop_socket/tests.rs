@@ -16,8 +16,7 @@ fn at(ms: u64) -> Time {
 }
 
 fn command(order: MotionOrder, given_ms: u64) -> StopOrder {
-    let given_ns = at(given_ms).ns();
-    StopOrder { order, given_ns }
+    StopOrder::new(order, at(given_ms))
 }
 
 /// The state of an arm that obeyed `command` and has come to rest.
@@ -29,6 +28,7 @@ fn obeyed(command: &StopOrder) -> StopState {
         at_rest: true,
         durable: true,
         inhibit: MotionInhibit::None,
+        stop: StopId(0),
     }
 }
 
@@ -205,6 +205,35 @@ fn release_is_given_up_soon() {
 }
 
 #[test]
+fn release_names_its_stop_and_ends_if_another_one_holds() {
+    let (_home, paths) = group();
+    let listener = StopListener::bind(&paths).unwrap();
+    let client = StopClient::open(&paths).unwrap();
+    let heard = || {
+        let mut orders = Vec::new();
+        listener.drain(|order, _| orders.push(order.stop));
+        orders
+    };
+    let given = at(9_000);
+    let mut release = Progress::new(MotionOrder::Resume, given, RELEASE_PATIENCE).of(StopId(5));
+    release.advance(&client, given);
+    assert_eq!(heard(), [StopId(5)]);
+    let held = obeyed(&command(MotionOrder::Stop, 9_000));
+    release.on_answer(StopState { stop: StopId(5), in_force_ns: 0, ..held }, at(9_001));
+    assert_eq!(release.result(at(9_002)), None, "the arm is about to release it");
+    release.on_answer(StopState { stop: StopId(6), in_force_ns: 0, ..held }, at(9_003));
+    assert_eq!(release.result(at(9_003)), Some(Err(StopError::OtherStop)));
+    release.renew(at(9_004), StopId(6));
+    release.advance(&client, at(9_004));
+    assert_eq!((heard(), release.result(at(9_004))), (vec![StopId(6)], None));
+    // Orders of older clients name none, and those to older arms must not.
+    let speaker = std::os::unix::net::UnixDatagram::bind(paths.run().join("old")).unwrap();
+    speaker.send_to(br#"{"order":"resume","given_ns":7}"#, paths.stop_socket()).unwrap();
+    client.send(&StopOrder::new(MotionOrder::Stop, given)).unwrap();
+    assert_eq!(heard(), [StopId(0), StopId(0)]);
+}
+
+#[test]
 fn what_an_arm_answered_before_its_end_confirms_nothing() {
     let mut stop = Progress::new(MotionOrder::Stop, at(1), None);
     let lost = StopState { durable: false, ..obeyed(&command(MotionOrder::Stop, 1)) };
@@ -233,7 +262,7 @@ fn order_that_is_given_again_puts_off_neither_its_deadline_nor_its_warning() {
     let mut stop = Progress::new(MotionOrder::Stop, at(0), Span::from_ms(4_000));
     let mut warned = None;
     for ms in (0..4_000).step_by(20) {
-        stop.renew(at(ms));
+        stop.renew(at(ms), StopId(0));
         assert!(stop.due(at(ms)), "each is sent at once");
         stop.on_sent(&Ok(()));
         warned = warned.or(stop.warning(at(ms)).map(|_| ms));
@@ -304,7 +333,7 @@ fn nonsense_and_floods_are_passed_over() {
     let client = StopClient::open(&paths).unwrap();
     // The queue of the socket is bounded, and never blocks a sender.
     for _ in 0..5_000 {
-        client.send(MotionOrder::Stop, Time(7)).unwrap();
+        client.send(&StopOrder::new(MotionOrder::Stop, Time(7))).unwrap();
     }
     let mut count = 0;
     listener.drain(|command, caller| {

@@ -3,14 +3,14 @@
 use std::ffi::{CString, c_char};
 use std::fs;
 
-use messages::{MotionOrder, ReceiptStatus, Sound};
+use messages::{MotionOrder, PromptId, ReceiptStatus, Sound, StopId};
 use service::bus::{Bus, Identity};
 use service::client::{Client, submit};
 use service::exit::Failure;
 use service::group::{ENV_GROUP, GroupName, GroupPaths};
 use service::lifecycle::{Environment, Lifecycle};
 use service::logging::{self, LogFlush};
-use service::stop_socket::{self, default_patience};
+use service::stop_socket::{self, StopError, default_patience};
 use service::submission::Submission;
 use service::{Span, Time, clock};
 
@@ -99,7 +99,7 @@ impl Group {
         Ok((name.clone(), lifecycle))
     }
 
-    fn say(&self, from: &str, text: &str, patience: Span) -> Result<u64, String> {
+    fn say(&self, from: &str, text: &str, seen: u64, patience: Span) -> Result<u64, String> {
         let Role::Client(client) = &self.role else {
             return Err("a service does not speak to the robot; help: join the group as a client"
                 .to_owned());
@@ -107,7 +107,8 @@ impl Group {
         let (writer, receipts) = client.submissions().map_err(|error| error.to_string())?;
         let sound = Sound::Text(text.to_owned());
         let said = (Time(0), Time(0));
-        let mut submission = Submission::new(sound, said, clock::now(), patience).by(from);
+        let submission = Submission::new(sound, said, clock::now(), patience).by(from);
+        let mut submission = submission.after(PromptId(seen));
         let receipts = submit(&writer, &receipts, &mut submission, || {
             (!self.paths.control_socket().exists()).then(|| "the group is not running".to_owned())
         });
@@ -121,18 +122,22 @@ impl Group {
 }
 
 impl Group {
-    /// Gives an order to the motion stop; `seconds` below 0 stand for the usual patience.
-    fn order(&self, order: MotionOrder, seconds: f64) -> bool {
+    /// Gives an order to the motion stop, a release of `stop` alone; `seconds` below 0 stand for the usual patience.
+    fn order(&self, order: MotionOrder, stop: StopId, seconds: f64) -> bool {
         let patience = match seconds >= 0.0 {
             true => Some(Span::from_s(seconds.min(SECONDS_MAX))),
             false => default_patience(order),
         };
-        let given = stop_socket::give(&self.paths, order, patience, &mut |why| {
+        let complain = &mut |why: Option<StopError>| {
             why.iter()
                 .for_each(|why| complain(&format_args!("not confirmed: {why}; it is repeated")));
             true
-        });
-        or_complain(given).is_some()
+        };
+        or_complain(match order {
+            MotionOrder::Stop => stop_socket::give(&self.paths, order, patience, complain),
+            MotionOrder::Resume => stop_socket::release(&self.paths, stop, patience, complain),
+        })
+        .is_some()
     }
 }
 
@@ -192,7 +197,7 @@ pub unsafe extern "C" fn whichone_say(
     // SAFETY: as the caller promises.
     let (Some(group), Some(words)) = (unsafe { (group.as_ref(), text(words)) }) else { return 0 };
     let patience = Span::from_s(seconds.clamp(0.0, 3600.0));
-    or_complain(group.say("", words, patience)).unwrap_or_default()
+    or_complain(group.say("", words, 0, patience)).unwrap_or_default()
 }
 
 /// As [`whichone_say`], for a person by their name.
@@ -207,10 +212,26 @@ pub unsafe extern "C" fn whichone_say_from(
     seconds: f64,
 ) -> u64 {
     // SAFETY: as the caller promises.
+    unsafe { whichone_say_in_answer(group, from, words, 0, seconds) }
+}
+
+/// As [`whichone_say_from`], in answer to the line `seen`, the latest one that the person was shown; 0 if unknown.
+///
+/// # Safety
+/// `group` is null or joined; `from` and `words` are null, or end with a zero.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn whichone_say_in_answer(
+    group: *const Group,
+    from: *const c_char,
+    words: *const c_char,
+    seen: u64,
+    seconds: f64,
+) -> u64 {
+    // SAFETY: as the caller promises.
     let given = unsafe { (group.as_ref(), text(from), text(words)) };
     let (Some(group), Some(from), Some(words)) = given else { return 0 };
     let patience = Span::from_s(seconds.clamp(0.0, 3600.0));
-    or_complain(group.say(from, words, patience)).unwrap_or_default()
+    or_complain(group.say(from, words, seen, patience)).unwrap_or_default()
 }
 
 /// Stops the arm and latches the stop. Returns false after saying why it is not confirmed.
@@ -220,7 +241,8 @@ pub unsafe extern "C" fn whichone_say_from(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn whichone_stop_motion(group: *const Group, seconds: f64) -> bool {
     // SAFETY: as the caller promises.
-    unsafe { group.as_ref() }.is_some_and(|group| group.order(MotionOrder::Stop, seconds))
+    unsafe { group.as_ref() }
+        .is_some_and(|group| group.order(MotionOrder::Stop, StopId(0), seconds))
 }
 
 /// Releases the motion stop. Returns false after saying why it is not confirmed.
@@ -230,7 +252,22 @@ pub unsafe extern "C" fn whichone_stop_motion(group: *const Group, seconds: f64)
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn whichone_resume_motion(group: *const Group, seconds: f64) -> bool {
     // SAFETY: as the caller promises.
-    unsafe { group.as_ref() }.is_some_and(|group| group.order(MotionOrder::Resume, seconds))
+    unsafe { whichone_release_stop(group, 0, seconds) }
+}
+
+/// As [`whichone_resume_motion`], for this stop alone, the one that the person saw; 0 stands for any.
+///
+/// # Safety
+/// `group` is null or joined.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn whichone_release_stop(
+    group: *const Group,
+    stop: u64,
+    seconds: f64,
+) -> bool {
+    // SAFETY: as the caller promises.
+    let group = unsafe { group.as_ref() };
+    group.is_some_and(|group| group.order(MotionOrder::Resume, StopId(stop), seconds))
 }
 
 /// Key of the scene in force.

@@ -38,11 +38,13 @@ class Fake:
         self.answers = {"info": "info", "state": "state_idle", "motion/stop": "stop", "motion/resume": "resumed"}
         self.info: dict[str, Any] = {}
         self.arm_moves = False
+        self.arm_stop = 0
         self.stop_takes_s = 0.0
         self.token = TOKEN
         self.said: list[dict[str, Any]] = []
         self.keys: list[str] = []
         self.asked: list[str] = []
+        self.bodies: dict[str, str] = {}
         self.resumed_after: list[str | None] = []
         self._replies: dict[str, str] = {}
         self._streams: set[web.StreamResponse] = set()
@@ -117,19 +119,20 @@ class Fake:
     async def _other(self, request: web.Request) -> web.Response:
         path = request.match_info["path"]
         self.asked.append(path)
+        self.bodies[path] = await request.text()
         if path == "info" and self.info:
             return web.json_response(ANSWERS["info"]["body"] | self.info)
         if path != "info" and self._is_refused(request):
             return answer("no_token")
         if path == "motion/stop":
             await asyncio.sleep(self.stop_takes_s)
-        if path == "state" and self.arm_moves:
+        if path == "state" and (self.arm_moves or self.arm_stop):
             return web.json_response(self._state())
         return answer(self.answers[path])
 
     def _state(self) -> dict[str, Any]:
         state = ANSWERS[self.answers["state"]]["body"]
-        return state | {"arm": state["arm"] | {"moving": self.arm_moves}}
+        return state | {"arm": state["arm"] | {"moving": self.arm_moves, "stop": self.arm_stop}}
 
     async def _events(self, request: web.Request) -> web.StreamResponse:
         if self._is_refused(request):

@@ -1,5 +1,7 @@
 """Buttons, sensor, event, and the stream that feeds them."""
 
+import json
+
 import aiohttp
 import pytest
 from homeassistant.exceptions import HomeAssistantError
@@ -26,6 +28,21 @@ async def press(hass, key):
 def of(name):
     """Return the data of the first recorded event of a name."""
     return next(event["data"] for event in EVENTS if event["event"] == name)
+
+
+async def test_resume_is_of_the_stop_that_was_shown(core, fake, entry):
+    link = entry.runtime_data
+    await press(core, "resume")
+    assert fake.bodies["motion/resume"] == "", "no stop is known: any"
+    link.state |= {"arm": {"stop": 7}}
+    await press(core, "resume")
+    assert json.loads(fake.bodies["motion/resume"]) == {"stop": 7}
+    fake.answers["motion/resume"], fake.arm_stop = "other_stop", 8
+    with pytest.raises(HomeAssistantError):
+        await press(core, "resume")
+    fake.answers["motion/resume"] = "resumed"
+    await press(core, "resume")
+    assert json.loads(fake.bodies["motion/resume"]) == {"stop": 8}, "the user has been told of it"
 
 
 async def test_stop_and_resume(core, fake, entry):

@@ -1,6 +1,7 @@
 """Messages, scene and readings without a group: `python3 -m unittest discover shared/sdk/python/tests`."""
 
 import ctypes
+import itertools
 import json
 import socket
 import sys
@@ -9,12 +10,13 @@ import threading
 import time
 import unittest
 from pathlib import Path
+from types import SimpleNamespace
 
 HERE = Path(__file__).resolve()
 sys.path.insert(0, str(HERE.parents[1]))
 ROOT = HERE.parents[4]
 
-from whichone import GroupNotRunning, InvalidMessage, Reading, Response, Scene, _stop, spot
+from whichone import Client, GroupNotRunning, InvalidMessage, Reading, Response, Scene, _stop, spot
 from whichone import messages as m
 from whichone.group import Group
 from whichone._postcard import decode, encode
@@ -38,7 +40,7 @@ class StopOrder(unittest.TestCase):
 
     def answer(self, **changed):
         return {"given_ns": 5, "in_force_ns": 5, "stopped": True, "at_rest": True, "durable": True,
-                "inhibit": "None"} | changed
+                "inhibit": "none", "stop": 0} | changed
 
     def test_stop_outlasts_every_restart_and_warns_now_and_then(self):
         stop, warnings = _stop.Order("stop", 0.0, None), []
@@ -54,7 +56,7 @@ class StopOrder(unittest.TestCase):
         self.assertTrue(stop.is_done(86_400))
 
     def test_only_an_arm_at_rest_that_is_heard_confirms(self):
-        for changed in ({"at_rest": False}, {"inhibit": "Unheard"}, {"stopped": False}):
+        for changed in ({"at_rest": False}, {"inhibit": "unheard"}, {"stopped": False}):
             stop = _stop.Order("stop", 0.0, None)
             stop.on_answer(self.answer(**changed), 0.1)
             self.assertFalse(stop.is_done(1.0), changed)
@@ -64,6 +66,14 @@ class StopOrder(unittest.TestCase):
         late = _stop.Order("resume", 0.0, 5.0)
         self.assertFalse(late.is_done(4.9))
         self.assertRaisesRegex(_stop.NotStopped, "does not answer", late.is_done, 5.0)
+
+    def test_release_of_a_stop_that_is_not_the_latest_ends(self):
+        release = _stop.Order("resume", 3.0, 5.0, stop=7)
+        for arm in ({"stop": 7}, {}):
+            release.on_answer(self.answer(given_ns=3_000_000_000, **arm), 3.1)
+            self.assertFalse(release.is_done(3.1), arm)
+        release.on_answer(self.answer(given_ns=3_000_000_000, stop=8), 3.1)
+        self.assertRaisesRegex(_stop.NotStopped, "another stop", release.is_done, 3.1)
 
     def test_restarted_arm_takes_the_repeated_order(self):
         with tempfile.TemporaryDirectory() as home:
@@ -87,6 +97,22 @@ class StopOrder(unittest.TestCase):
                 _stop.give(group, "stop", None)
                 starter.join()
             self.assertEqual(orders[0]["order"], "stop")
+
+
+class Say(unittest.TestCase):
+    """Words of a client, to topics that this test imitates."""
+
+    def test_words_answer_the_line_that_they_name_or_the_latest_one(self):
+        sent, robot = [], Client.__new__(Client)
+        robot._identity, robot._injections = bytes(8), SimpleNamespace(send=sent.append)
+        robot.look = lambda: SimpleNamespace(view=SimpleNamespace(prompt=9), presented=None)
+        accepted = m.ReceiptStatus.ACCEPTED
+        robot._receipts = map(lambda _: SimpleNamespace(key=sent[-1].key, status=accepted, seq=4), itertools.repeat(0))
+        for seen, expected in ((None, 9), (7, 7), (0, 0)):
+            self.assertEqual(robot.say("yes", seen=seen), 4)
+            self.assertEqual(robot.point([0.0, 0.0, 0.0], seen=seen), 4)
+            self.assertEqual(robot.hypotheses([("yes", 1.0)], seen=seen), 4)
+            self.assertEqual({injection.seen_prompt for injection in sent[-3:]}, {expected})
 
 
 def wait_until(fact):

@@ -40,8 +40,8 @@ class NotStopped(RuntimeError):
 class Order:
     """Progress of one order, without a clock and a socket of its own."""
 
-    def __init__(self, order: str, given: float, timeout: float | None) -> None:
-        self.order, self.given, self.timeout = order, given, timeout
+    def __init__(self, order: str, given: float, timeout: float | None, stop: int = 0) -> None:
+        self.order, self.given, self.timeout, self.stop = order, given, timeout, stop
         self.is_absent = False
         self.state: dict[str, Any] | None = None
         self.rests_since: float | None = None
@@ -56,7 +56,7 @@ class Order:
 
     def on_answer(self, state: dict[str, Any], now: float) -> None:
         """Takes in an answer to this order."""
-        is_heard = state["inhibit"] not in ("Unheard", "Stale")
+        is_heard = state["inhibit"] not in ("unheard", "stale")
         rests = state["stopped"] and state["at_rest"] and is_heard
         self.rests_since = (now if self.rests_since is None else self.rests_since) if rests else None
         is_unheard = state["stopped"] and not is_heard
@@ -71,6 +71,9 @@ class Order:
                 return True
             if self.order == "stop" and self.rests_since is not None:
                 return self.state["durable"] or is_late or now - self.rests_since >= DURABLE_GRACE_S
+            if self.stop and self.state.get("stop", 0) not in (0, self.stop):
+                raise NotStopped("another stop was given after the one that this releases, and holds; "
+                                 "help: see why the arm was stopped again, then release that stop")
             if self.state["stopped"] != (self.order == "stop") and self.state["in_force_ns"] > self.state["given_ns"]:
                 raise NotStopped("overruled by a later order; help: see `whichone watch`")
             if self.order == "resume" and self.state["in_force_ns"] + RESUME_AFTER_S * 1e9 > self.state["given_ns"]:
@@ -107,13 +110,14 @@ class Order:
         return f"the arm is stopping but not at rest after {waited}; {EMERGENCY}"
 
 
-def give(group: Group, order: str, timeout: float | None) -> None:
-    """Repeats an order until the arm has carried it out; for at most `timeout` seconds, if it is given. A stop that is
-    left unconfirmed is kept for the arm's return. Raises `NotStopped` or `GroupNotRunning`."""
+def give(group: Group, order: str, timeout: float | None, stop: int = 0) -> None:
+    """Repeats an order until the arm has carried it out; for at most `timeout` seconds, if it is given. A release is
+    of `stop` alone, 0 stands for any. A stop that is left unconfirmed is kept for the arm's return. Raises `NotStopped`
+    or `GroupNotRunning`."""
     given_ns = time.monotonic_ns()
-    progress = Order(order, given_ns / 1e9, timeout)
-    request = json.dumps({"order": order, "given_ns": max(given_ns - _clock_offset_ns(), 1)}).encode()
-    stamp = json.loads(request)["given_ns"]
+    progress = Order(order, given_ns / 1e9, timeout, stop)
+    stamp = max(given_ns - _clock_offset_ns(), 1)
+    request = json.dumps({"order": order, "given_ns": stamp} | ({"stop": stop} if stop else {})).encode()
     with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as arm:
         # Both sides check who the other one is.
         arm.setsockopt(socket.SOL_SOCKET, socket.SO_PASSCRED, 1)

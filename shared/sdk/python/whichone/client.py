@@ -124,25 +124,29 @@ class Client:
                 yield now
             time.sleep(every_s)
 
-    def say(self, text: str, *, from_: str = "", timeout: float = 10.0) -> int:
-        """Says something to the robot, as if typed, in answer to its latest line; `from_` is the name of the person who speaks, at most 64 bytes.
-        Returns the utterance's number once it is durable: it will be
-        applied once, whatever is killed. Raises `Refused` or `TimeoutError`."""
-        return self._deliver(m.SoundText(text), from_, timeout)
+    def say(self, text: str, *, from_: str = "", seen: int | None = None, timeout: float = 10.0) -> int:
+        """Says something to the robot, as if typed. It answers the line `seen`, a `prompt` of `look()` that the person
+        was shown last; by default the robot's latest one. `from_` is the name of the person who speaks, at most 64
+        bytes. Returns the utterance's number once it is durable: it will be applied once, whatever is killed. Raises
+        `Refused` or `TimeoutError`."""
+        return self._deliver(m.SoundText(text), from_, seen, timeout)
 
-    def point(self, xyz: Sequence[float], words: str = "", *, from_: str = "", timeout: float = 10.0) -> int:
+    def point(self, xyz: Sequence[float], words: str = "", *, from_: str = "", seen: int | None = None,
+              timeout: float = 10.0) -> int:
         """Points at a place (metres, frame `base`), with words or without. Otherwise as `say`."""
-        return self._deliver(m.SoundPoint(target_m=[float(x) for x in xyz], words=words), from_, timeout)
+        return self._deliver(m.SoundPoint(target_m=[float(x) for x in xyz], words=words), from_, seen, timeout)
 
-    def hypotheses(self, wordings: Sequence[tuple[str, float]], *, from_: str = "", timeout: float = 10.0) -> int:
+    def hypotheses(self, wordings: Sequence[tuple[str, float]], *, from_: str = "", seen: int | None = None,
+                   timeout: float = 10.0) -> int:
         """Says what a recogniser has heard: wordings with their weights, most likely first. Otherwise as `say`."""
         heard = [m.Hypothesis(text=text, weight=weight, word_confidence=[]) for text, weight in wordings]
-        return self._deliver(m.SoundTranscript(hypotheses=heard), from_, timeout)
+        return self._deliver(m.SoundTranscript(hypotheses=heard), from_, seen, timeout)
 
-    def _deliver(self, sound: m.Sound, from_: str, timeout: float) -> int:
+    def _deliver(self, sound: m.Sound, from_: str, seen: int | None, timeout: float) -> int:
         key = self._identity + secrets.token_bytes(8)
         now = self.look()
-        seen = max((part.prompt for part in (now.view, now.presented) if part), default=0)
+        latest = max((part.prompt for part in (now.view, now.presented) if part), default=0)
+        seen = latest if seen is None else seen
         injection = m.Injection(key=key, onset_ns=0, end_ns=0, seen_prompt=seen, from_=from_, sound=sound)
         until, due = time.monotonic() + timeout, 0.0
         while (now := time.monotonic()) < until:
@@ -204,9 +208,10 @@ class Client:
         `NotStopped`: use the robot's own emergency stop then."""
         _stop.give(self.group, "stop", timeout)
 
-    def resume(self, timeout: float = 5.0) -> None:
-        """Releases the motion stop. Raises `NotStopped`."""
-        _stop.give(self.group, "resume", timeout)
+    def resume(self, timeout: float = 5.0, *, stop: int = 0) -> None:
+        """Releases the motion stop. `stop` is the one that the person saw, `look().arm.stop`: if another one has been
+        given since, it holds. 0 stands for any. Raises `NotStopped`."""
+        _stop.give(self.group, "resume", timeout, stop)
 
 
 __all__ = ["Client", "GroupNotRunning", "NoPick", "NotStopped", "Refused", "Snapshot"]

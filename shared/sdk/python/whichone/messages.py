@@ -1047,8 +1047,8 @@ class ArmStatus(Message):
     """State of the arm executor. Arm to policy and speech."""
 
     wire_name = "ArmStatus"
-    wire_size = 40
-    schema_key = "f718994c0b0a6760"
+    wire_size = 48
+    schema_key = "8b147729fca6b4f3"
     interaction: int
     """`InteractionId` of the latest pick."""
     aimed_act: int
@@ -1073,6 +1073,8 @@ class ArmStatus(Message):
     """Zero."""
     remaining_s: float
     """Expected seconds until the pick is done, 0 where none runs."""
+    stop: int
+    """`StopId` of the motion stop in force, 0 for none: a release names it."""
     codes = {"phase": PickPhase, "outcome": PickOutcome, "hindrance": MotionInhibit, "task": Task}
     _fields_ = [
         ("interaction", ctypes.c_uint64),  # 0
@@ -1087,6 +1089,7 @@ class ArmStatus(Message):
         ("task", ctypes.c_uint8),  # 29
         ("reserved", ctypes.c_uint8 * 2),  # 30
         ("remaining_s", ctypes.c_double),  # 32
+        ("stop", ctypes.c_uint64),  # 40
     ]
 
 

@@ -4,14 +4,14 @@ use std::time::{Duration, Instant};
 
 use messages::{
     ArmStatus, Ended, Injection, MotionOrder, PolicyView, Presented, PromptId, Receipt,
-    ReceiptStatus, Sound, topics,
+    ReceiptStatus, Sound, StopId, topics,
 };
 use runtime::bus::{Bus, EncodedReader, EncodedWriter, Reader};
 use runtime::client::{Polling, submit};
 use runtime::clock;
 use runtime::exit::{Exit, Failure};
 use runtime::group::{ENV_GROUP, GroupName, GroupPaths};
-use runtime::stop_socket::{self, StopState, default_patience};
+use runtime::stop_socket::{self, RELEASE_PATIENCE, StopError, StopState, default_patience};
 use runtime::submission::Submission;
 use runtime::{Span, Time};
 use scene::{ObjectId, Question, Scene};
@@ -128,7 +128,16 @@ impl Client {
     /// # Errors
     /// Refused (the reason is in the message), or no answer within 10 s.
     pub fn say(&mut self, text: &str) -> Result<u64, Failure> {
-        self.submit(Sound::Text(text.to_owned()))
+        self.submit(Sound::Text(text.to_owned()), None)
+    }
+
+    /// Says something in answer to the line `seen`, the latest one that the person was shown
+    /// ([`PolicyView::prompt`]). Words that answer a line which was not said yet wait for it for a second.
+    ///
+    /// # Errors
+    /// As [`Client::say`].
+    pub fn answer(&mut self, text: &str, seen: PromptId) -> Result<u64, Failure> {
+        self.submit(Sound::Text(text.to_owned()), Some(seen))
     }
 
     /// Points at a place, metres in frame `base`, with words or without.
@@ -136,14 +145,14 @@ impl Client {
     /// # Errors
     /// As [`Client::say`].
     pub fn point(&mut self, target_m: [f64; 3], words: &str) -> Result<u64, Failure> {
-        self.submit(Sound::Point { target_m, words: words.to_owned() })
+        self.submit(Sound::Point { target_m, words: words.to_owned() }, None)
     }
 
-    fn submit(&mut self, sound: Sound) -> Result<u64, Failure> {
+    fn submit(&mut self, sound: Sound, seen: Option<PromptId>) -> Result<u64, Failure> {
         self.take()?;
         let said = (clock::now(), Time(0));
         let shown = self.view.as_ref().map_or(0, |view| view.prompt);
-        let seen = PromptId(shown.max(self.presented.prompt));
+        let seen = seen.unwrap_or(PromptId(shown.max(self.presented.prompt)));
         let Self { injections, receipts, from, .. } = self;
         let mut submission = Submission::new(sound, said, clock::now(), ACCEPT_PATIENCE)
             .after(seen)
@@ -252,26 +261,39 @@ impl Client {
         self.order(MotionOrder::Stop, Some(Span::from_s(patience.as_secs_f64())))
     }
 
-    /// Releases the motion stop.
+    /// Releases the motion stop, whichever is in force.
     ///
     /// # Errors
     /// Not confirmed within 5 s.
     pub fn resume(&self) -> Result<StopState, Failure> {
-        self.order(MotionOrder::Resume, default_patience(MotionOrder::Resume))
+        self.release(StopId(0))
+    }
+
+    /// Releases this stop, the one that the person saw ([`ArmStatus::stop`]).
+    ///
+    /// # Errors
+    /// Another stop has been given since, and holds; or not confirmed within 5 s.
+    pub fn release(&self, stop: StopId) -> Result<StopState, Failure> {
+        let mut warn = warning(MotionOrder::Resume);
+        Ok(stop_socket::release(&self.paths, stop, RELEASE_PATIENCE, &mut warn)?)
     }
 
     fn order(&self, order: MotionOrder, patience: Option<Span>) -> Result<StopState, Failure> {
-        Ok(stop_socket::give(&self.paths, order, patience, &mut |why| {
-            why.iter()
-                .for_each(|why| tracing::warn!(%why, ?order, "not confirmed; it is repeated"));
-            true
-        })?)
+        Ok(stop_socket::give(&self.paths, order, patience, &mut warning(order))?)
     }
 
     /// Returns the name of an object of the scene.
     pub fn name_of(&self, object: ObjectId) -> Option<&str> {
         let named = self.scene.objects().get(self.scene.numbered(object)?.index());
         named.map(|object| object.name.as_str())
+    }
+}
+
+/// Logs why an order is not confirmed yet.
+fn warning(order: MotionOrder) -> impl FnMut(Option<StopError>) -> bool {
+    move |why| {
+        why.iter().for_each(|why| tracing::warn!(%why, ?order, "not confirmed; it is repeated"));
+        true
     }
 }
 

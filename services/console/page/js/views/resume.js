@@ -32,13 +32,17 @@ export function mountResume(element, context) {
   let holder = null;
   let timer = 0;
   let wasStopped = false;
+  /** The stop in force when the hold began; the demo has no numbers. @type {number|undefined} */
+  let seen;
+  /** The stop in force, as it was shown last. @type {number|undefined} */
+  let shown;
 
   const isShown = () =>
     document.documentElement.dataset.role !== "screen" &&
     store.get("now").atRest &&
     mayResume(store.get("control"), store.get("welcome"));
   const begin = (by, bySpace = false) => {
-    if (hold.begin(performance.now(), bySpace)) holder = by;
+    if (hold.begin(performance.now(), bySpace)) [holder, seen] = [by, shown];
     watch();
   };
   const end = (by) => {
@@ -49,7 +53,7 @@ export function mountResume(element, context) {
   };
   const cancel = () => end(holder);
   const step = () => {
-    if (hold.step(performance.now())) attempt(link.do("resume"), context);
+    if (hold.step(performance.now())) attempt(link.do("resume", { stop: seen }), context);
     show();
   };
   // The clock runs only while a hold does, or has to wait.
@@ -97,13 +101,14 @@ export function mountResume(element, context) {
 
   const draw = () => {
     const stopped = store.get("now").is === "stopped";
+    const stop = store.get("arm")?.stop;
     // Whoever has stopped it: a moment passes before it can be released here.
-    if (stopped && !wasStopped) hold.press(performance.now());
-    wasStopped = stopped;
+    if (stopped && (!wasStopped || stop !== shown)) hold.press(performance.now());
+    [wasStopped, shown] = [stopped, stop];
     if (!isShown()) cancel();
     element.hidden = !isShown();
     if (!element.hidden) watch();
   };
-  store.subscribe(["now", "control"], draw);
+  store.subscribe(["now", "arm", "control"], draw);
   store.subscribe("stop", watch);
 }

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use command_line::Outcome;
 use command_line::interrupt::Interrupt;
 use command_line::output::note;
-use messages::MotionOrder;
+use messages::{MotionOrder, StopId};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
@@ -57,7 +57,7 @@ pub(in crate::verbs) struct News {
 /// At its end a stop that is not confirmed is kept for the arm's return.
 pub(in crate::verbs) struct MotionOrders {
     /// None at the end.
-    orders: Option<Sender<MotionOrder>>,
+    orders: Option<Sender<(MotionOrder, StopId)>>,
     news: Receiver<News>,
     state: Arc<State>,
     worker: Option<JoinHandle<()>>,
@@ -104,11 +104,20 @@ impl MotionOrders {
         Ok(Self { orders: Some(orders), news, state, worker, paths: paths.clone() })
     }
 
-    /// Gives an order; [`MotionOrders::news`] reports its outcome.
-    pub(in crate::verbs) fn give(&self, order: MotionOrder) {
+    /// Stops the arm; [`MotionOrders::news`] reports the outcome.
+    pub(in crate::verbs) fn stop(&self) {
+        self.give(MotionOrder::Stop, StopId(0));
+    }
+
+    /// Releases this stop, which the user saw; 0 stands for any.
+    pub(in crate::verbs) fn release(&self, stop: StopId) {
+        self.give(MotionOrder::Resume, stop);
+    }
+
+    fn give(&self, order: MotionOrder, stop: StopId) {
         self.state.open.fetch_add(1, Ordering::Relaxed);
         // The thread ends after this handle.
-        let _ = self.orders.as_ref().map(|orders| orders.send(order));
+        let _ = self.orders.as_ref().map(|orders| orders.send((order, stop)));
     }
 
     /// Returns the next news.
@@ -149,7 +158,7 @@ impl MotionOrders {
 
 struct Worker {
     client: StopClient,
-    given: Receiver<MotionOrder>,
+    given: Receiver<(MotionOrder, StopId)>,
     news: Sender<News>,
     current: Option<Progress>,
     warnings: Warnings,
@@ -185,12 +194,14 @@ impl Worker {
         }
     }
 
-    fn on_order(&mut self, order: MotionOrder) {
+    fn on_order(&mut self, (order, stop): (MotionOrder, StopId)) {
         let now = clock::now();
         self.taken += 1;
         match &mut self.current {
-            Some(current) if current.order() == order => current.renew(now),
-            current => *current = Some(Progress::new(order, now, default_patience(order))),
+            Some(current) if current.order() == order => current.renew(now, stop),
+            current => {
+                *current = Some(Progress::new(order, now, default_patience(order)).of(stop));
+            }
         }
     }
 

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use command_line::Outcome;
 use command_line::interrupt::Interrupt;
 use command_line::output::Style;
-use messages::{MotionOrder, Receipt, ReceiptStatus};
+use messages::{Receipt, ReceiptStatus, StopId};
 use ratatui::Terminal;
 use ratatui::backend::CrosstermBackend;
 use ratatui::crossterm::event::{self, Event};
@@ -74,24 +74,36 @@ fn show(
         }
         drawn = None;
         let Event::Key(key) = event::read().map_err(Failure::output)? else { continue };
-        match keyboard.press(key, clock::now()) {
-            None => {}
+        let stop = model.latest().arm.map_or(StopId(0), |arm| arm.stop());
+        notice = match keyboard.press(key, stop, clock::now()) {
+            None => notice,
             Some(Command::Quit) => return Ok(()),
-            Some(Command::Say(text)) => model.say(&text)?,
-            Some(Command::TooSoon) => {
-                notice =
-                    Some(Notice::good("stopped just now; r resumes 2 s after the latest stop"));
-            }
-            Some(Command::Motion(order)) => {
-                orders.give(order);
-                notice = Some(Notice::good(match order {
-                    MotionOrder::Stop => "stopping the arm …",
-                    MotionOrder::Resume => "releasing the motion stop …",
-                }));
-            }
-        }
+            Some(command) => carry_out(command, model, orders)?.or(notice),
+        };
     }
     Ok(())
+}
+
+/// Carries out a command of the keyboard; returns what is shown about it.
+fn carry_out(
+    command: Command,
+    model: &mut WatchModel,
+    orders: &MotionOrders,
+) -> Result<Option<Notice>, Failure> {
+    let text = match command {
+        Command::Quit => return Ok(None),
+        Command::Say(text) => return model.say(&text).map(|()| None),
+        Command::TooSoon => "stopped just now; r resumes 2 s after the latest stop",
+        Command::Stop => {
+            orders.stop();
+            "stopping the arm …"
+        }
+        Command::Release(stop) => {
+            orders.release(stop);
+            "releasing the motion stop …"
+        }
+    };
+    Ok(Some(Notice::good(text)))
 }
 
 /// The reason for which an utterance that was typed here is not accepted.

@@ -103,9 +103,9 @@ class Robot:
                     raise
             await asyncio.sleep(PAUSE_S)
 
-    async def resume(self) -> None:
-        """Release the stop. None counts within 2 s of a stop."""
-        await self._call("POST", "motion/resume", seconds=8)
+    async def resume(self, stop: int) -> None:
+        """Release this stop, 0 for any. None counts within 2 s of a stop."""
+        await self._call("POST", "motion/resume", seconds=8, **({"json": {"stop": stop}} if stop else {}))
 
     async def say(self, words: Words) -> dict[str, Any]:
         """Say a sentence once and return the reply. It is sent again, under its key, while the robot restarts."""

@@ -51,8 +51,10 @@ class Resume(WhichoneEntity, ButtonEntity):
     async def async_press(self) -> None:
         """Release the stop."""
         try:
-            await self.link.robot.resume()
+            await self.link.robot.resume(self.link.stop)
         except RobotError as error:
+            if isinstance(error, Problem) and error.code == "other_stop":
+                await self.link.look_at_arm()
             raise _not_done(error, "not_resumed") from error
 
 

@@ -152,6 +152,16 @@ class Link:
         self._notify(event)
 
     @property
+    def stop(self) -> int:
+        """The stop in force, as far as it is known; 0 otherwise."""
+        return (self.state.get("arm") or {}).get("stop", 0)
+
+    async def look_at_arm(self) -> None:
+        """Look which stop is in force: no event tells of a stop that follows another one."""
+        with contextlib.suppress(RobotError):
+            self.state |= {"arm": (await self.robot.state()).get("arm")}
+
+    @property
     def _arm_moves(self) -> bool:
         return bool((self.state.get("arm") or {}).get("moving"))
 

@@ -3,7 +3,7 @@
 //! A terminal reports no release of a key, so that a key cannot be held to resume. Stop keys only ever stop; resuming
 //! is another key and then a typed word, and both are dead for a while after every stop key.
 
-use messages::MotionOrder;
+use messages::StopId;
 use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use service::Time;
 
@@ -19,8 +19,10 @@ const RESUME: &str = "resume";
 pub(super) enum Command {
     /// End the dashboard.
     Quit,
-    /// Latch or release the motion stop.
-    Motion(MotionOrder),
+    /// Latch the motion stop.
+    Stop,
+    /// Release the motion stop that was in force when the release was begun; 0 stands for any.
+    Release(StopId),
     /// Say this to the robot.
     Say(String),
     /// The user wants to resume too soon after a stop.
@@ -43,6 +45,8 @@ pub(super) enum Mode {
 pub(super) struct Keyboard {
     mode: Mode,
     guard: ResumeGuard,
+    /// The stop in force when the release was begun that waits for its word.
+    seen: StopId,
 }
 
 impl Keyboard {
@@ -57,10 +61,13 @@ impl Keyboard {
         Self { mode, ..Self::default() }
     }
 
-    /// Takes a key. Ctrl-S stops the arm and Ctrl-C quits, whatever the other keys mean.
-    pub(super) fn press(&mut self, key: KeyEvent, now: Time) -> Option<Command> {
+    /// Takes a key, while `stop` is in force. Ctrl-S stops the arm and Ctrl-C quits, whatever the other keys mean.
+    pub(super) fn press(&mut self, key: KeyEvent, stop: StopId, now: Time) -> Option<Command> {
         if key.kind == KeyEventKind::Release {
             return None;
+        }
+        if !matches!(self.mode, Mode::Releasing(_)) {
+            self.seen = stop;
         }
         if key.modifiers.contains(KeyModifiers::CONTROL) {
             return match key.code {
@@ -81,7 +88,7 @@ impl Keyboard {
             self.mode = Mode::Watching;
         }
         self.guard.on_stop(now);
-        Command::Motion(MotionOrder::Stop)
+        Command::Stop
     }
 
     fn command(&mut self, code: KeyCode, now: Time) -> Option<Command> {
@@ -101,7 +108,7 @@ impl Keyboard {
         match code {
             KeyCode::Enter if word == RESUME => {
                 return Some(match self.guard.may_resume(now) {
-                    true => Command::Motion(MotionOrder::Resume),
+                    true => Command::Release(self.seen),
                     false => Command::TooSoon,
                 });
             }
@@ -136,8 +143,9 @@ mod tests {
     use super::*;
     use service::Span;
 
-    const STOP: Command = Command::Motion(MotionOrder::Stop);
-    const RELEASE: Command = Command::Motion(MotionOrder::Resume);
+    const STOP: Command = Command::Stop;
+    const SEEN: StopId = StopId(7);
+    const RELEASE: Command = Command::Release(SEEN);
 
     fn at(ms: u64) -> Time {
         Time(0) + Span::from_ms(ms)
@@ -159,7 +167,7 @@ mod tests {
     }
 
     fn press(keyboard: &mut Keyboard, keys: &str, ms: u64) -> Vec<Command> {
-        keys.chars().filter_map(|c| keyboard.press(key(c), at(ms))).collect()
+        keys.chars().filter_map(|c| keyboard.press(key(c), SEEN, at(ms))).collect()
     }
 
     #[test]
@@ -191,6 +199,11 @@ mod tests {
         assert_eq!(press(&mut Keyboard::default(), "rs", 0), [STOP]);
         let mut keyboard = Keyboard::default();
         assert_eq!(press(&mut keyboard, "rresume\x13\n", 0), [STOP], "and no release after it");
+        // Another stop is given while the word is typed.
+        press(&mut keyboard, "rresume", 2_000);
+        assert_eq!(keyboard.press(key('\n'), StopId(8), at(2_000)), Some(RELEASE));
+        assert_eq!(keyboard.press(key('r'), StopId(8), at(2_000)), None);
+        assert_eq!(press(&mut keyboard, "resume\n", 2_000), [Command::Release(StopId(8))]);
     }
 
     #[test]
@@ -222,7 +235,7 @@ mod tests {
                     let mut commands = Vec::new();
                     for (number, c) in hammered.chars().cycle().take(100).enumerate() {
                         let ms = 3_000 + number as u64 * every_ms;
-                        commands.extend(keyboard.press(key(c), at(ms)));
+                        commands.extend(keyboard.press(key(c), SEEN, at(ms)));
                     }
                     let releases = commands.iter().filter(|command| **command == RELEASE).count();
                     assert!(
@@ -239,9 +252,9 @@ mod tests {
     #[test]
     fn dashboard_stops_the_arm_also_while_text_is_typed() {
         let mut keyboard = Keyboard::in_mode(Mode::Typing("the".into()));
-        assert_eq!(keyboard.press(control('s'), at(0)), Some(STOP));
+        assert_eq!(keyboard.press(control('s'), SEEN, at(0)), Some(STOP));
         assert_eq!(keyboard.mode, Mode::Typing("the".into()));
         assert_eq!(press(&mut keyboard, "\x1b\x1b", 0), [STOP], "the first one ends the line");
-        assert_eq!(keyboard.press(control('c'), at(0)), Some(Command::Quit));
+        assert_eq!(keyboard.press(control('c'), SEEN, at(0)), Some(Command::Quit));
     }
 }

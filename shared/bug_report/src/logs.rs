@@ -6,6 +6,7 @@ use std::path::Path;
 use std::thread;
 use std::time::Duration;
 
+use clap::Args;
 use command_line::Outcome;
 use command_line::output::{Ink, Output};
 use serde::{Deserialize, Serialize};
@@ -14,13 +15,27 @@ use service::group::GroupPaths;
 use service::log_tail::LogFile;
 use service::printable::one_line;
 
-use crate::cli::LogsArgs;
+/// Arguments of `logs`.
+#[derive(Debug, Args)]
+pub struct LogsArgs {
+    /// Name of a service, or `supervisor` [default: all].
+    pub service: Option<String>,
+    /// Follow the logs.
+    #[arg(long, short)]
+    pub follow: bool,
+    /// Number of lines from the end.
+    #[arg(long, short = 'n', value_name = "N", default_value_t = 40)]
+    pub tail: usize,
+}
 
 /// Interval at which logs are polled for new lines.
 const LOOK_EVERY: Duration = Duration::from_millis(200);
 
 /// Shows the last lines of the logs and follows them.
-pub(super) fn logs(paths: &GroupPaths, args: &LogsArgs, out: &mut Output<'_>) -> Outcome {
+///
+/// # Errors
+/// The service has no log, or a log cannot be read.
+pub fn logs(paths: &GroupPaths, args: &LogsArgs, out: &mut Output<'_>) -> Outcome {
     let mut files = files(paths, args.service.as_deref())?;
     let mut lines = Vec::new();
     for file in &mut files {
@@ -177,4 +192,5 @@ fn time_of(line: &str) -> Option<&str> {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 mod tests;

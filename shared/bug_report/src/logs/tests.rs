@@ -3,7 +3,8 @@ use std::io::Write;
 use super::*;
 
 fn group() -> (tempfile::TempDir, GroupPaths) {
-    let (home, paths) = crate::verbs::lab();
+    let home = tempfile::tempdir().unwrap();
+    let paths = GroupPaths::in_home(home.path(), &"lab".parse().unwrap()).unwrap();
     fs::create_dir_all(paths.log()).unwrap();
     (home, paths)
 }
