@@ -6,6 +6,7 @@
 //! names of the scene file and upright objects in frame `base`.
 
 use perception::{Change, Detection, Frame, Look, Rotation, Sighting};
+use scene::Scene;
 
 /// Most unknown identifiers that are remembered, so that each is reported once.
 const UNKNOWN_MAX: usize = 64;
@@ -84,8 +85,8 @@ pub struct UnusedCounts {
 pub struct Detector {
     source: String,
     labels: Vec<Label>,
-    /// Names that need no label.
-    names: Vec<String>,
+    /// The scene whose names and words need no label.
+    scene: Option<Scene>,
     frames: Vec<Frame>,
     counts: UnusedCounts,
     reported: Vec<String>,
@@ -94,13 +95,13 @@ pub struct Detector {
 }
 
 impl Detector {
-    /// Converts messages of the source `source`, e.g. a topic. `names` are identifiers that need no
-    /// label, `frames` the known ones besides `base`.
-    pub fn new(source: &str, labels: &[Label], names: Vec<String>, frames: &[Frame]) -> Self {
+    /// Converts messages of the source `source`, e.g. a topic. Identifiers that `scene` knows, by name
+    /// or by its words, need no label; `frames` are those besides `base`.
+    pub fn new(source: &str, labels: &[Label], scene: Option<Scene>, frames: &[Frame]) -> Self {
         Self {
             source: source.to_owned(),
             labels: labels.to_vec(),
-            names,
+            scene,
             frames: frames.to_vec(),
             counts: UnusedCounts::default(),
             reported: Vec::new(),
@@ -198,8 +199,10 @@ impl Detector {
     fn label(&self, id: &str) -> Option<Label> {
         let own = self.labels.iter().find(|label| label.id == id).cloned();
         own.or_else(|| {
-            let object = self.names.iter().find(|name| *name == id)?.clone();
-            Some(Label { id: id.to_owned(), object, xyz: [0.0; 3], rpy: [0.0; 3] })
+            let scene = self.scene.as_ref()?;
+            let (id, object) = (id.to_owned(), id.to_owned());
+            let label = Label { id, object, xyz: [0.0; 3], rpy: [0.0; 3] };
+            perception::is_known(&label.id, scene).then_some(label)
         })
     }
 
