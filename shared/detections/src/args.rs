@@ -50,7 +50,7 @@ pub enum ObjectsVerb {
         #[arg(value_name = "OBJECT")]
         object: String,
     },
-    /// Report looks of a camera, one JSON line each on standard input: docs/perception.md, or as detectors print them.
+    /// Report looks of a camera: one JSON line each on standard input, docs/perception.md.
     Feed(FeedArgs),
 }
 

@@ -391,7 +391,7 @@ mod tests {
                 |axis: usize| turned.turn(std::array::from_fn(|n| f64::from(u8::from(n == axis))));
             let columns = [column(0), column(1), column(2)];
             let rows = std::array::from_fn(|row| std::array::from_fn(|k| columns[k][row]));
-            let again = perception::Rotation::from_quaternion(quaternion(rows));
+            let again = ros::rotation::of_quaternion(quaternion(rows));
             for vector in [[1.0, 0.0, 0.0], [0.2, -0.5, 0.7]] {
                 let pairs = turned.turn(vector).into_iter().zip(again.turn(vector));
                 assert!(pairs.into_iter().all(|(a, b)| (a - b).abs() < 1e-9), "{rpy:?}");

@@ -8,6 +8,8 @@
 use perception::{Change, Detection, Frame, Look, Rotation, Sighting};
 use scene::Scene;
 
+use crate::rotation::{followed, of_quaternion, variances, yaw_of};
+
 /// Most unknown identifiers that are remembered, so that each is reported once.
 const UNKNOWN_MAX: usize = 64;
 
@@ -237,21 +239,21 @@ fn classes(known: &[(Label, &Hypothesis)]) -> Vec<(String, f64)> {
 
 /// Place and variances in frame `base` of the object with that label.
 fn placed(frame: &Frame, pose: &Pose, label: &Label, covariance: &[f64; 36]) -> Detection {
-    let in_frame = Rotation::from_quaternion(pose.orientation);
+    let in_frame = of_quaternion(pose.orientation);
     let to_base = Rotation::from_rpy(frame.rpy);
     let offset = in_frame.turn(label.xyz);
     let center = std::array::from_fn(|axis| pose.position[axis] + offset[axis]);
     let turned = to_base.turn(center);
     let block = |first: usize| {
         let row = |i| std::array::from_fn(|j| covariance[6 * (first + i) + first + j]);
-        to_base.variances(&std::array::from_fn(row))
+        variances(&to_base, &std::array::from_fn(row))
     };
     // Some drivers mark an unknown covariance by −1; NaN is just as unusable.
     let stated = |variance: f64| if variance.is_finite() { variance.max(0.0) } else { 0.0 };
     let ([x, y, z], [_, _, yaw]) = (block(0), block(3));
     Detection {
         xyz: std::array::from_fn(|axis| turned[axis] + frame.xyz[axis]),
-        yaw: to_base.after(&in_frame).after(&Rotation::from_rpy(label.rpy)).yaw(),
+        yaw: yaw_of(&followed(&followed(&Rotation::from_rpy(label.rpy), &in_frame), &to_base)),
         variances: [x, y, z, yaw].map(stated),
         ..Detection::default()
     }
