@@ -70,5 +70,6 @@ targets! {
     sound_files "wav"
     messages_of_browsers "console"
     control_requests "control"
+    lines_of_detectors "detections"
     spoken_and_typed_text "language"
 }

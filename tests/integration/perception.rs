@@ -94,6 +94,10 @@ fn objects_of_a_feed_appear_after_a_few_looks() {
     });
     let wrong = feed("{\"seen\": 3}\n");
     assert_eq!(wrong.code, Some(1), "{wrong:?}");
+    let person = json!({ "classes": { "person": 0.9 }, "xyz": [1.0, 0.0, 0.0] });
+    let refused = feed(&json!({ "seen": [person] }).to_string());
+    assert_eq!(refused.code, Some(1), "{refused:?}");
+    assert!(refused.stdout.contains("no object `person`"), "{refused:?}");
     assert_eq!(names(&group).len(), 1);
     group.down();
 }

@@ -2,7 +2,7 @@
 //! vanishes meanwhile.
 
 use whichone_tests::number;
-use whichone_tests::simulated_group::{Faults, Tally, at_best, perceive};
+use whichone_tests::simulated_group::{Faults, Tally, at_best, detect, perceive};
 
 const DIALOGUES: u64 = 20;
 
@@ -36,4 +36,31 @@ fn perceived_objects_that_the_camera_mistakes_bound_what_answers_achieve() {
     let share = at_best(20_000, number("WHICHONE_SEED").unwrap_or(1));
     println!("right at best, every value known: {:.2} %", 100.0 * share);
     assert!((0.98..0.99).contains(&share), "{share}");
+}
+
+/// Questions of a dialogue under a noisy detector, on average.
+const QUESTIONS_MAX: f64 = 4.0;
+
+fn check_noisy(dialogues: u64) {
+    let seed = number("WHICHONE_SEED").unwrap_or(1);
+    let found = detect(number("WHICHONE_SEEDS").unwrap_or(dialogues), seed);
+    let Tally { dialogues, right, questions, questions_certain, beside, worst_m, .. } = found;
+    let [asked, certain] = [questions, questions_certain].map(|it| it as f64 / dialogues as f64);
+    println!(
+        "seed {seed}: {right} of {dialogues} right, {asked:.2} questions, of a certain scene {certain:.2}; \
+         grasps at most {:.1} mm off",
+        1e3 * worst_m
+    );
+    assert_eq!((right, beside), (dialogues, 0), "seed {seed}: {}", found.stories.join("\n\n"));
+    assert!(asked <= QUESTIONS_MAX, "seed {seed}: {asked} questions");
+}
+
+#[test]
+fn noisy_detector_costs_no_wrong_object_and_few_questions() {
+    check_noisy(12);
+}
+
+#[test]
+fn noisy_detector_costs_no_wrong_object_in_sixty_dialogues() {
+    check_noisy(60);
 }

@@ -132,21 +132,17 @@ impl PolicyNode {
             true => Err(Refusal::Fetching),
             false => tracker.take(sighting, self.manager.scene_file(), &perceived.hiding, now),
         };
-        match taken {
-            Err(refusal) => {
-                perceived.refuse(&sighting.source, &refusal);
-                if is_by_hand {
-                    perceived.answer(sighting.key, Err(&refusal));
-                }
-            }
-            Ok(changed) => {
-                if let Some(object) = changed {
-                    perceived.answer(sighting.key, Ok(object));
-                }
-                self.step_table(changed.map(|object| (sighting.key, object)), now, fx);
-            }
+        let is_refused = taken.is_err();
+        if let Err(refusal) = &taken {
+            perceived.refuse(&sighting.source, refusal);
         }
-        if is_by_hand {
+        if let (true, Some(outcome)) = (is_by_hand, taken.as_ref().copied().transpose()) {
+            perceived.answer(sighting.key, outcome);
+        }
+        let changed = taken.unwrap_or_default();
+        // Detections of a look may be used beside one that is refused.
+        self.step_table(changed.map(|object| (sighting.key, object)), now, fx);
+        if is_by_hand || is_refused {
             self.send_table(now, fx);
         } else {
             self.send_changed_table(now, fx);

@@ -138,7 +138,7 @@ fn subscription<M: Detections + 'static>(
 ) -> Subscription {
     let Labels { classes, markers } = labels;
     let labels = if M::OF_CLASSES { classes } else { markers };
-    let detector = Arc::new(Mutex::new(Detector::new(topic, labels, Vec::new(), frames)));
+    let detector = Arc::new(Mutex::new(Detector::new(topic, labels, None, frames)));
     let take = Arc::clone(take);
     let name = topic.to_owned();
     let sink = move || -> Sink {
@@ -191,7 +191,7 @@ mod tests {
         };
         let labels: Vec<_> = labels.iter().map(label).collect();
         let lens = Frame { name: "lens".to_owned(), xyz: [0.0, 0.0, 1.0], rpy: [0.0; 3] };
-        Detector::new("/camera", &labels, Vec::new(), &[lens])
+        Detector::new("/camera", &labels, None, &[lens])
     }
 
     /// The look that a message becomes, after the check that its stamp is that of the fixture.

@@ -126,15 +126,14 @@ impl Detectors {
     pub fn new(objects: &Ros2Objects, settings: &Settings) -> Self {
         let Ros2Objects { detections, ar_markers, tf, labels } = objects;
         let frames = &settings.group.perception.tracker.frames;
-        let of = |topic: &Option<String>, labels, names| {
+        let of = |topic: &Option<String>, labels, scene| {
             let topic = topic.clone().unwrap_or_default();
-            TopicDetector { detector: Detector::new(&topic, labels, names, frames), topic }
+            TopicDetector { detector: Detector::new(&topic, labels, scene, frames), topic }
         };
-        let objects = settings.scene.objects().iter().map(|object| object.name.clone());
         Self {
-            classes: of(detections, &labels.classes, objects.collect()),
-            ar_markers: of(ar_markers, &labels.markers, Vec::new()),
-            frames: of(tf, &labels.markers, Vec::new()),
+            classes: of(detections, &labels.classes, Some(settings.scene.clone())),
+            ar_markers: of(ar_markers, &labels.markers, None),
+            frames: of(tf, &labels.markers, None),
         }
     }
 

@@ -12,9 +12,7 @@ use service::group::{ENV_GROUP, GroupName};
 mod group;
 mod headings;
 mod link;
-mod objects;
 mod people;
-mod record;
 mod talk;
 
 pub use command_line::args::ConfigArgs;
@@ -23,9 +21,7 @@ pub use group::{
     WaitFor,
 };
 pub use link::LinkArgs;
-pub use objects::{ObjectsArgs, ObjectsVerb, PlaceArgs};
 pub use people::{PeopleArgs, PeopleVerb};
-pub use record::{OpenArgs, RecordVerb, RecorderArgs};
 pub use talk::{AwaitArgs, Awaited, ChatArgs, JournalAction, JournalArgs, ListenArgs};
 pub use talk::{MotionArgs, PointArgs, SayArgs, TalkArgs, WatchArgs};
 
@@ -211,7 +207,7 @@ pub enum Verb {
     /// `dialogue.gesture.enabled`.
     Point(PointArgs),
     /// List or change the objects on the table, where they come from perception.
-    Objects(ObjectsArgs),
+    Objects(detections::args::ObjectsArgs),
     /// List, export or forget what was learned about people who gave their name.
     People(PeopleArgs),
     /// Play a WAV file to the robot's speech recogniser.
@@ -254,7 +250,7 @@ pub enum Verb {
     Record {
         /// Action.
         #[command(subcommand)]
-        what: RecordVerb,
+        what: laboratory::args::RecordVerb,
     },
     /// Replay what the services were given, and compare what they state with what they stated.
     ///

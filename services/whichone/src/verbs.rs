@@ -2,10 +2,11 @@
 
 use command_line::Outcome;
 use command_line::output::Output;
-use messages::MotionOrder;
+use messages::{MotionOrder, Service};
 use service::control::Request;
 use service::group::GroupPaths;
 
+use self::availability::Availability;
 use crate::cli::{Awaited, Cli, ServiceArgs, StopArgs, Verb};
 
 mod availability;
@@ -23,10 +24,8 @@ mod licences;
 mod link;
 mod listen;
 mod motion;
-mod objects;
 mod operate;
 mod people;
-mod record;
 mod speak;
 mod status;
 mod up;
@@ -63,7 +62,11 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         Verb::Conform(args) => laboratory::conform(&args, out),
         Verb::Say(args) => speak::say(&paths()?, &args, out),
         Verb::Point(args) => speak::point(&paths()?, &args, out),
-        Verb::Objects(args) => objects::objects(&paths()?, &args, out),
+        Verb::Objects(args) => {
+            let paths = paths()?;
+            let is_up = || Availability::now(&paths).require(Service::Policy);
+            detections::objects(&paths, &args, is_up, out)
+        }
         Verb::People(args) => people::people(&paths()?, &args, out),
         Verb::Listen(args) => listen::listen(&paths()?, &args, out),
         Verb::Talk(args) => speak::talk(&paths()?, &args, out),
@@ -79,7 +82,7 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         Verb::Link(args) => Err(link::link(&cli.common.group, args)),
         Verb::Fleet(args) => Err(link::fleet(args, cli.common.json)),
         Verb::Gateway(args) => Err(link::gateway(args)),
-        Verb::Record { what } => record::record(&paths()?, what, out),
+        Verb::Record { what } => operate::recorder(&paths()?, what, out),
         Verb::Replay(args) => laboratory::replay(paths, &args, out),
         Verb::Scene { what } => laboratory::scene(what, out),
         Verb::Journal(args) => inspection::journal(&paths()?, &args, out),

@@ -1,6 +1,7 @@
 //! Arguments of many verbs.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::Args;
 
@@ -34,4 +35,18 @@ pub fn key_and_value(text: &str) -> Result<(String, String), String> {
     let (key, value) =
         text.split_once('=').ok_or("expected KEY=VALUE, e.g. dialogue.planner=entropy")?;
     Ok((key.trim().to_owned(), value.trim().to_owned()))
+}
+
+/// Longest timeout, a month: sums of times stay far from overflow.
+const SECONDS_MAX: f64 = 2_678_400.0;
+
+/// Parses a timeout.
+///
+/// # Errors
+/// It is not a number of seconds, or out of range.
+pub fn seconds(text: &str) -> Result<Duration, String> {
+    let wrong = || "expected seconds, e.g. 30".to_owned();
+    let seconds: f64 = text.trim().parse().map_err(|_| wrong())?;
+    let sensible = (0.0..=SECONDS_MAX).contains(&seconds);
+    sensible.then(|| Duration::from_secs_f64(seconds)).ok_or_else(wrong)
 }

@@ -3,6 +3,7 @@
 
 use service::exit::{Exit, Failure};
 
+pub mod amounts;
 pub mod args;
 pub mod configuration;
 pub mod interrupt;

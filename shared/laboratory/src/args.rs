@@ -4,6 +4,7 @@ mod arm;
 mod batch;
 mod conform;
 mod export;
+mod record;
 mod replay;
 mod robot;
 mod scene;
@@ -13,6 +14,7 @@ pub use arm::{ArmPlotArgs, ArmVerb};
 pub use batch::{ArmArgs, GroundArgs, InputArgs, PlanArgs, ProblemArgs, WhichArm};
 pub use conform::ConformArgs;
 pub use export::{ExportVerb, McapArgs, PomdpArgs};
+pub use record::{OpenArgs, RecordVerb, RecorderArgs};
 pub use replay::ReplayArgs;
 pub use robot::{ImportArgs, RobotVerb, ServosArgs};
 pub use scene::{

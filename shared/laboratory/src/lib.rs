@@ -1,7 +1,7 @@
 //! Verbs for evaluation of the robot, for development of its services, and for authors of scenes and
 //! configurations, without a running robot.
 //!
-//! The table of verbs lists [`Verb`] whole, [`conform`], [`replay`], [`check`] and [`scene`] singly; [`run`] runs it.
+//! [`recordings`] has two verbs for the files of a recorder. The table of verbs lists [`Verb`] whole, [`conform`], [`replay`], [`check`] and [`scene`] singly; [`run`] runs it.
 
 use clap::Subcommand;
 use command_line::Outcome;
@@ -23,6 +23,7 @@ pub mod described_arm;
 mod export;
 mod planning;
 mod progress;
+pub mod recordings;
 mod replay;
 mod robot;
 mod scene;

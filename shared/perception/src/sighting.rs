@@ -97,9 +97,14 @@ pub enum Refusal {
     /// The object is unknown.
     #[error("no object `{0}` on the table; help: `whichone objects list` names them")]
     NoObject(String),
-    /// The class is unknown.
-    #[error("no object `{0}` in the scene file; help: name one of its objects as the class")]
-    NoClass(String),
+    /// The class is neither the name of an object nor words for one.
+    #[error("no object `{0}` in the scene file; help: name one of {1}, or use the scene's words")]
+    NoClass(String, String),
+    /// The place is beyond the reach of any arm.
+    #[error(
+        "a place at {0} m is beyond any reach; help: {1}? Positions are metres in frame `base`"
+    )]
+    Far(String, &'static str),
     /// The attribute is unknown.
     #[error("unknown attribute `{0}`; help: the scene file has {1}")]
     NoAttribute(String, String),

@@ -5,6 +5,8 @@ use vocabulary::time::{Span, Time};
 
 use crate::{Change, Detection, Frame, Hiding, Look, Refusal, Settings, Sighting, Tracker};
 
+mod beliefs;
+
 const CAMERA: &str = "camera";
 
 fn file() -> Scene {
@@ -290,7 +292,8 @@ fn changes_by_hand_count_at_once_and_are_not_missed_before_they_are_seen() {
     let gone = it.report("hand", Change::Remove { object: "6".to_owned() });
     assert_eq!(gone, Err(Refusal::NoObject("6".to_owned())));
     let teapot = it.report("hand", Change::Add(seen("teapot", 0.6, 0.0)));
-    assert_eq!(teapot, Err(Refusal::NoClass("teapot".to_owned())));
+    let known = "white, white2, white3, metal, metal2, clear".to_owned();
+    assert_eq!(teapot, Err(Refusal::NoClass("teapot".to_owned(), known)));
     let mut of = |name: &str, value: &str| {
         let attributes = vec![(name.to_owned(), vec![(value.to_owned(), 1.0)])];
         let detection = Detection { attributes, ..seen("metal", 0.6, 0.0) };

@@ -1,20 +1,16 @@
 //! The tracker: follows objects through looks, and says which there are.
 
-use scene::{ObjectId, Perceived, Scene, likeliest};
+use scene::{ObjectId, Perceived, Scene};
 use vocabulary::Table;
 use vocabulary::time::{Span, Time};
 
+use crate::checks::{check_values, in_base, one_in_base};
 use crate::estimate::Estimate;
-use crate::{Change, Detection, Frame, Look, Refusal, Sighting};
+use crate::{Change, Detection, Frame, Look, Refusal, Sighting, labels};
 use track::{Candidate, Track};
 
 mod looks;
 mod track;
-
-/// Detections in one look that are used.
-const SEEN_MAX: usize = 256;
-/// Largest change of a class probability that is ignored.
-const CHANCE_STEP: f64 = 0.1;
 
 /// Settings of the tracker.
 #[derive(Clone, Debug, PartialEq)]
@@ -73,7 +69,7 @@ impl Tracker {
     pub fn new(settings: Settings, table: &Table, file: &Scene, now: Time) -> Self {
         let track = |object: &Perceived| Track {
             object: object.clone(),
-            estimate: Estimate::new(&Detection {
+            estimate: Estimate::stated(&Detection {
                 classes: object.classes.clone(),
                 attributes: object.attributes.clone(),
                 xyz: object.xyz,
@@ -95,7 +91,7 @@ impl Tracker {
     /// Takes in a report of a source. Returns the object of a change by hand.
     ///
     /// # Errors
-    /// Why it was not used.
+    /// Why it was not used. Of a look with detections that cannot be used the others are.
     pub fn take(
         &mut self,
         sighting: &Sighting,
@@ -106,19 +102,24 @@ impl Tracker {
         let Sighting { source, frame, change, .. } = sighting;
         match change {
             Change::Look(look) => {
-                self.look(source, &self.in_base(frame, look)?, hiding, now).map(|()| None)
+                let (seen, refusals) = in_base(&self.settings.frames, frame, &look.seen, file)?;
+                self.look(source, &Look { seen, ..*look }, file, hiding, now)?;
+                refusals.into_iter().next().map_or(Ok(None), Err)
             }
             Change::Add(detection) => {
-                let look = Look { seen: vec![detection.clone()], ..Look::default() };
-                let mut look = self.in_base(frame, &look)?;
-                let detection = look.seen.pop().ok_or(Refusal::Number)?;
-                self.add(&detection, file, now).map(Some)
+                check_values(detection, file)?;
+                let detection = one_in_base(&self.settings.frames, frame, detection, file)?;
+                if detection.classes.is_empty() {
+                    return Err(labels::unknown(&detection, file));
+                }
+                let estimate = Estimate::stated(&detection);
+                self.appear(estimate, None, now).map(Some).ok_or(Refusal::Full(self.tracks.len()))
             }
             Change::Move { object, xyz, yaw } => {
                 let of = Detection { xyz: *xyz, yaw: *yaw, ..Detection::default() };
-                let look = self.in_base(frame, &Look { seen: vec![of], ..Look::default() })?;
+                let of = one_in_base(&self.settings.frames, frame, &of, file)?;
                 let track = self.named(object)?;
-                track.estimate.put(look.seen[0].xyz, look.seen[0].yaw);
+                track.estimate.put(of.xyz, of.yaw);
                 (track.missed, track.misses) = (Span(0), 0);
                 track.report(0.0);
                 Ok(Some(track.object.number))
@@ -187,51 +188,4 @@ impl Tracker {
         let track = self.tracks.iter_mut().find(|track| is_it(&track.object));
         track.ok_or_else(|| Refusal::NoObject(name.to_owned()))
     }
-
-    /// Checks a look, and converts its places to frame `base`.
-    fn in_base(&self, frame: &str, look: &Look) -> Result<Look, Refusal> {
-        let known = self.settings.frames.iter().find(|known| known.name == frame);
-        if frame != "base" && known.is_none() {
-            return Err(Refusal::Frame(frame.to_owned()));
-        }
-        if !look.seen.iter().all(Detection::is_sound) {
-            return Err(Refusal::Number);
-        }
-        let mut look = look.clone();
-        look.seen.truncate(SEEN_MAX);
-        for detection in &mut look.seen {
-            if let Some(frame) = known {
-                (detection.xyz, detection.yaw) = frame.to_base(detection.xyz, detection.yaw);
-            }
-        }
-        Ok(look)
-    }
-
-    fn add(&mut self, detection: &Detection, file: &Scene, now: Time) -> Result<ObjectId, Refusal> {
-        let class = likeliest(&detection.classes).unwrap_or_default();
-        if file.object_named(class).is_none() {
-            return Err(Refusal::NoClass(class.to_owned()));
-        }
-        check_values(detection, file)?;
-        self.appear(Estimate::new(detection), None, now).ok_or(Refusal::Full(self.tracks.len()))
-    }
-}
-
-/// Checks that the scene file has the attributes and values. Others, from cameras, do not count.
-fn check_values(detection: &Detection, file: &Scene) -> Result<(), Refusal> {
-    for (name, values) in &detection.attributes {
-        let Some(k) = file.attribute_named(name) else {
-            let known = listed(file.attributes().iter().map(|attribute| attribute.name.as_str()));
-            return Err(Refusal::NoAttribute(name.clone(), known));
-        };
-        if let Some((value, _)) = values.iter().find(|(v, _)| file.value_named(k, v).is_none()) {
-            let known = file.attributes()[k.index()].values.iter().map(|value| value.name.as_str());
-            return Err(Refusal::NoValue(name.clone(), value.clone(), listed(known)));
-        }
-    }
-    Ok(())
-}
-
-fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
-    names.collect::<Vec<_>>().join(", ")
 }

@@ -6,6 +6,9 @@
 //! names of the scene file and upright objects in frame `base`.
 
 use perception::{Change, Detection, Frame, Look, Rotation, Sighting};
+use scene::Scene;
+
+use crate::rotation::{followed, of_quaternion, variances, yaw_of};
 
 /// Most unknown identifiers that are remembered, so that each is reported once.
 const UNKNOWN_MAX: usize = 64;
@@ -84,8 +87,8 @@ pub struct UnusedCounts {
 pub struct Detector {
     source: String,
     labels: Vec<Label>,
-    /// Names that need no label.
-    names: Vec<String>,
+    /// The scene whose names and words need no label.
+    scene: Option<Scene>,
     frames: Vec<Frame>,
     counts: UnusedCounts,
     reported: Vec<String>,
@@ -94,13 +97,13 @@ pub struct Detector {
 }
 
 impl Detector {
-    /// Converts messages of the source `source`, e.g. a topic. `names` are identifiers that need no
-    /// label, `frames` the known ones besides `base`.
-    pub fn new(source: &str, labels: &[Label], names: Vec<String>, frames: &[Frame]) -> Self {
+    /// Converts messages of the source `source`, e.g. a topic. Identifiers that `scene` knows, by name
+    /// or by its words, need no label; `frames` are those besides `base`.
+    pub fn new(source: &str, labels: &[Label], scene: Option<Scene>, frames: &[Frame]) -> Self {
         Self {
             source: source.to_owned(),
             labels: labels.to_vec(),
-            names,
+            scene,
             frames: frames.to_vec(),
             counts: UnusedCounts::default(),
             reported: Vec::new(),
@@ -198,8 +201,10 @@ impl Detector {
     fn label(&self, id: &str) -> Option<Label> {
         let own = self.labels.iter().find(|label| label.id == id).cloned();
         own.or_else(|| {
-            let object = self.names.iter().find(|name| *name == id)?.clone();
-            Some(Label { id: id.to_owned(), object, xyz: [0.0; 3], rpy: [0.0; 3] })
+            let scene = self.scene.as_ref()?;
+            let (id, object) = (id.to_owned(), id.to_owned());
+            let label = Label { id, object, xyz: [0.0; 3], rpy: [0.0; 3] };
+            perception::is_known(&label.id, scene).then_some(label)
         })
     }
 
@@ -234,21 +239,21 @@ fn classes(known: &[(Label, &Hypothesis)]) -> Vec<(String, f64)> {
 
 /// Place and variances in frame `base` of the object with that label.
 fn placed(frame: &Frame, pose: &Pose, label: &Label, covariance: &[f64; 36]) -> Detection {
-    let in_frame = Rotation::from_quaternion(pose.orientation);
+    let in_frame = of_quaternion(pose.orientation);
     let to_base = Rotation::from_rpy(frame.rpy);
     let offset = in_frame.turn(label.xyz);
     let center = std::array::from_fn(|axis| pose.position[axis] + offset[axis]);
     let turned = to_base.turn(center);
     let block = |first: usize| {
         let row = |i| std::array::from_fn(|j| covariance[6 * (first + i) + first + j]);
-        to_base.variances(&std::array::from_fn(row))
+        variances(&to_base, &std::array::from_fn(row))
     };
     // Some drivers mark an unknown covariance by −1; NaN is just as unusable.
     let stated = |variance: f64| if variance.is_finite() { variance.max(0.0) } else { 0.0 };
     let ([x, y, z], [_, _, yaw]) = (block(0), block(3));
     Detection {
         xyz: std::array::from_fn(|axis| turned[axis] + frame.xyz[axis]),
-        yaw: to_base.after(&in_frame).after(&Rotation::from_rpy(label.rpy)).yaw(),
+        yaw: yaw_of(&followed(&followed(&Rotation::from_rpy(label.rpy), &in_frame), &to_base)),
         variances: [x, y, z, yaw].map(stated),
         ..Detection::default()
     }

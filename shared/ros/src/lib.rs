@@ -4,6 +4,7 @@ pub mod clock;
 pub mod detector;
 pub mod detectors;
 pub mod geometry;
+pub mod rotation;
 pub mod wire;
 
 /// Returns whether a text is a name of ROS without slashes. Two underscores side by side are reserved.

@@ -22,6 +22,8 @@ const ROWS: [&[&str]; 4] = [
 const DEPTH: &[&str] = &["in front", "at the back"];
 /// Distance at which people distinguish neighbours in a row, metres.
 const APART_M: f64 = 0.04;
+/// Likeness from which objects are told apart by their places.
+const ALIKE_MIN: f64 = 0.5;
 
 /// Distinction of objects by their places.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,9 +33,29 @@ pub(crate) struct ByPlace {
     words: usize,
 }
 
+impl Object {
+    /// The probability that both have the same values, as far as their doubts allow; 1 if they are
+    /// known to.
+    fn likeness(&self, other: &Self) -> f64 {
+        let chance = |object: &Self, k: usize, v: ValueId| match object.chances.get(k) {
+            Some(Some(chances)) => chances[v.index()],
+            _ => f64::from(u8::from(object.values[k] == Some(v))),
+        };
+        let doubts =
+            |object: &Self, k| object.chances.get(k).and_then(Option::as_ref).map(Vec::len);
+        let shared = |k: usize| match doubts(self, k).or(doubts(other, k)) {
+            Some(values) => {
+                (0..values).map(|v| chance(self, k, v.into()).min(chance(other, k, v.into()))).sum()
+            }
+            None => f64::from(u8::from(self.values[k] == other.values[k])),
+        };
+        (0..self.values.len()).map(shared).product()
+    }
+}
+
 impl Scene {
     /// Returns the scene with an attribute of places, as the viewer sees them, if some objects
-    /// share all other values; otherwise the scene as it is. Replacing objects computes it again.
+    /// share all other values, or may do so; otherwise the scene as it is. Replacing objects computes it again.
     #[must_use]
     pub fn by_place(mut self, view: View) -> Self {
         self.places = Some(ByPlace { view, words: self.words().len() });
@@ -120,10 +142,14 @@ impl Scene {
         for first in 0..rows.len() {
             let is_alike = |i: &usize| {
                 let (object, other) = (&self.objects()[*i], &self.objects()[first]);
-                !object.taken && !other.taken && object.values == other.values
+                !object.taken && !other.taken && object.likeness(other) >= ALIKE_MIN
             };
-            let alike: Vec<usize> = (first..rows.len()).filter(is_alike).collect();
-            if seen[first] || alike.len() < 2 {
+            if seen[first] {
+                continue;
+            }
+            let others = (first..rows.len()).filter(|i| !seen[*i]);
+            let alike: Vec<usize> = others.filter(is_alike).collect();
+            if alike.len() < 2 {
                 continue;
             }
             alike.iter().for_each(|i| seen[*i] = true);

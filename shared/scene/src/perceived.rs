@@ -69,6 +69,21 @@ impl Scene {
         all.find(|object| self.number(*object) == number)
     }
 
+    /// Returns the probability of every value of an attribute that follows from the classes, and that
+    /// of lacking the attribute. Names that the scene does not have are ignored.
+    pub fn values_of_classes(&self, classes: &[(String, f64)], k: AttributeId) -> (Vec<f64>, f64) {
+        let mut chances = vec![0.0; self.attributes()[k.index()].values.len()];
+        let mut lacking = 0.0;
+        let known = classes.iter().filter_map(|(name, p)| Some((self.object_named(name)?, *p)));
+        for (class, p) in known {
+            match self.object(class).values[k.index()] {
+                Some(v) => chances[v.index()] += p,
+                None => lacking += p,
+            }
+        }
+        (chances, lacking)
+    }
+
     fn object_of(&self, perceived: &Perceived) -> Object {
         let chances: Vec<Option<Vec<f64>>> =
             self.own_attributes().map(|k| self.chances_of(perceived, k)).collect();
@@ -112,14 +127,7 @@ impl Scene {
             let known = values.iter().filter_map(|(v, p)| Some((self.value_named(k, v)?, *p)));
             known.for_each(|(v, p)| chances[v.index()] += p);
         } else {
-            let known = perceived.classes.iter();
-            let known = known.filter_map(|(name, p)| Some((self.object_named(name)?, *p)));
-            for (class, p) in known {
-                match self.object(class).values[k.index()] {
-                    Some(v) => chances[v.index()] += p,
-                    None => lacking += p,
-                }
-            }
+            (chances, lacking) = self.values_of_classes(&perceived.classes, k);
         }
         let told: f64 = chances.iter().sum();
         if lacking >= told {

@@ -8,6 +8,7 @@ mod bytes;
 mod config;
 mod console;
 mod control;
+mod detections;
 mod flight;
 mod group;
 mod journal;
@@ -39,7 +40,7 @@ pub struct Target {
 }
 
 /// Every target.
-pub const TARGETS: [Target; 14] = [
+pub const TARGETS: [Target; 15] = [
     Target { name: "journal", run: journal::run, seeds: journal::seeds, mutations: 1_000 },
     Target {
         name: "records",
@@ -58,6 +59,7 @@ pub const TARGETS: [Target; 14] = [
     Target { name: "wav", run: wav::run, seeds: wav::seeds, mutations: 2_000 },
     Target { name: "console", run: console::run, seeds: console::seeds, mutations: 4_000 },
     Target { name: "control", run: control::run, seeds: control::seeds, mutations: 4_000 },
+    Target { name: "detections", run: detections::run, seeds: detections::seeds, mutations: 1_000 },
     Target { name: "language", run: language::run, seeds: language::seeds, mutations: 1_000 },
 ];
 

@@ -11,7 +11,7 @@
 //! | `client.rs` | the user at a terminal, by the command line's own code, who is killed as well |
 //! | `routes.rs` | routing of the services' messages |
 //! | `stop.rs` | stop orders that are repeated until the arm has carried them out |
-//! | `table.rs`, `perceived.rs` | objects from perception: a table under a simulated camera, and dialogues about it |
+//! | `table.rs`, `noisy.rs`, `perceived.rs` | objects from perception: a table under a simulated camera or detector, and dialogues about it |
 //! | `attribution.rs` | a study of turn-taking: to which question each answer is credited |
 
 mod attribution;
@@ -20,6 +20,7 @@ mod disk;
 mod faults;
 mod forger;
 mod host;
+mod noisy;
 mod perceived;
 mod routes;
 mod stop;
@@ -44,9 +45,10 @@ pub use attribution::{Count, study};
 pub use client::Client;
 pub use faults::{Fault, Faults};
 pub use host::{Crash, Host};
-pub use perceived::{Tally, at_best, before_camera, converse, perceive};
+pub use noisy::NoisyDetector;
+pub use perceived::{Tally, at_best, before_camera, converse, detect, perceive};
 pub use stop::RepeatedStop;
-pub use table::{Happening, TableTop};
+pub use table::{Eye, Happening, TableTop};
 pub use user::{Channel, GroupUser};
 
 /// Time between two passes.

@@ -8,7 +8,8 @@ use scene::{ObjectId, Perceived};
 use service::{Span, Time};
 use vocabulary::Rng;
 
-use super::table::{FORGIVEN_M, Happening, TableTop, fits_best};
+use super::noisy::NoisyDetector;
+use super::table::{Eye, FORGIVEN_M, Happening, TableTop, fits_best};
 use super::{Faults, GroupUser, SimulatedGroup};
 use crate::settings;
 
@@ -68,9 +69,27 @@ pub fn perceive(mode: &str, dialogues: u64, seed: u64, faults: fn(u64) -> Faults
         let wanted = rng.below(certain.scene.objects().len());
         let happening = if number % 2 == 0 { Happening::Nothing } else { draw(&mut rng, wanted) };
         let at = Time(0) + Span::from_s(2.0 + 8.0 * rng.uniform());
-        let group = converse(&perceiving, wanted, (happening, at), faults(seed), seed);
+        let eye = Eye::camera(camera(seed));
+        let group = converse(&perceiving, wanted, (happening, at), faults(seed), eye);
         let plain = SimulatedGroup::new(certain.clone(), GroupUser::typing(wanted), Faults::none());
         found.add(&group, happening, plain, seed);
+    }
+    found
+}
+
+/// Holds dialogues with users in another room about the shipped bowls, each seen by a noisy detector.
+pub fn detect(dialogues: u64, seed: u64) -> Tally {
+    let certain = settings(&[]);
+    let perceiving = settings(&[("group.perception.enabled", "true"), ("arm.time_scale", "1.0")]);
+    let mut found = Tally::default();
+    for number in 0..dialogues {
+        let seed = seed.wrapping_mul(1_000_003).wrapping_add(number);
+        let wanted = (number % certain.scene.objects().len() as u64) as usize;
+        let eye = Eye::Detector(NoisyDetector::new(seed));
+        let nothing = (Happening::Nothing, Time(0));
+        let group = converse(&perceiving, wanted, nothing, Faults::none(), eye);
+        let plain = SimulatedGroup::new(certain.clone(), GroupUser::typing(wanted), Faults::none());
+        found.add(&group, Happening::Nothing, plain, seed);
     }
     found
 }
@@ -133,9 +152,9 @@ pub fn converse(
     wanted: usize,
     happening: (Happening, Time),
     faults: Faults,
-    seed: u64,
+    eye: Eye,
 ) -> SimulatedGroup {
-    let mut group = before_camera(settings, wanted, happening, faults, seed);
+    let mut group = before_eye(settings, wanted, happening, faults, eye);
     group.run();
     group
 }
@@ -148,7 +167,17 @@ pub fn before_camera(
     faults: Faults,
     seed: u64,
 ) -> SimulatedGroup {
-    let table = TableTop::new(&settings.scene, camera(seed), happening);
+    before_eye(settings, wanted, happening, faults, Eye::camera(camera(seed)))
+}
+
+fn before_eye(
+    settings: &Settings,
+    wanted: usize,
+    happening: (Happening, Time),
+    faults: Faults,
+    eye: Eye,
+) -> SimulatedGroup {
+    let table = TableTop::new(&settings.scene, eye, happening);
     let user = GroupUser::typing(wanted);
     SimulatedGroup::new(settings.clone(), user, faults).with_table(table)
 }

@@ -5,6 +5,8 @@ use messages::{PickOutcome, PickPhase, Sighting, TableView, WorldView};
 use scene::{Object, ObjectId, Perceived, Question, Scene};
 use service::{Span, Time};
 
+use super::noisy::NoisyDetector;
+
 /// Distance from a gripper within which nobody moves an object, metres.
 const NEAR_M: f64 = 0.50;
 /// Distance from where the arm grasps within which an object is the one that is grasped, metres.
@@ -25,11 +27,27 @@ pub enum Happening {
     Vanishes(usize),
 }
 
+/// What looks at the table.
+#[derive(Clone, Debug)]
+pub enum Eye {
+    /// A camera that takes an object for the same thing at every look.
+    Camera(Camera),
+    /// A detector that errs anew at every look.
+    Detector(NoisyDetector),
+}
+
+impl Eye {
+    /// Returns a simulated camera.
+    pub fn camera(settings: CameraSettings) -> Self {
+        Self::Camera(Camera::new(settings))
+    }
+}
+
 /// The simulated table.
 #[derive(Debug)]
 pub struct TableTop {
     file: Scene,
-    camera: Camera,
+    eye: Eye,
     /// Where each object of the scene file stands.
     places: Vec<Option<[f64; 3]>>,
     happening: (Happening, Time),
@@ -46,7 +64,7 @@ pub struct TableTop {
 
 impl TableTop {
     /// The objects of the scene file in their places, and what happens at that time.
-    pub fn new(file: &Scene, camera: CameraSettings, happening: (Happening, Time)) -> Self {
+    pub fn new(file: &Scene, eye: Eye, happening: (Happening, Time)) -> Self {
         let place = |object: &Object| object.placement.map(|placement| placement.xyz);
         let mut places: Vec<_> = file.objects().iter().map(place).collect();
         if let Happening::Appears(object) = happening.0 {
@@ -54,7 +72,7 @@ impl TableTop {
         }
         Self {
             file: file.clone(),
-            camera: Camera::new(camera),
+            eye,
             places,
             happening,
             table: TableView::default(),
@@ -75,7 +93,10 @@ impl TableTop {
             })
             .collect();
         let grippers = self.grippers();
-        self.camera.look(&self.file, &standing, &grippers, now)
+        match &mut self.eye {
+            Eye::Camera(camera) => camera.look(&self.file, &standing, &grippers, now),
+            Eye::Detector(detector) => detector.look(&self.file, &standing, &grippers, now),
+        }
     }
 
     /// People move what the arm is not near to; else they wait.

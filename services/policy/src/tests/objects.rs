@@ -261,6 +261,42 @@ fn a_doubtful_detection_is_asked_about() {
     assert!(!pick_at_once(0.5), "the other may be white");
 }
 
+/// The camera sees no colour: whichever object is fetched would be a guess.
+#[test]
+fn objects_whose_values_are_in_doubt_are_asked_about_by_place() {
+    for doubt in [[0.34, 0.33, 0.33], [0.45, 0.3, 0.25]] {
+        let of = |n: usize, y: f64| {
+            let values = ["white", "metallic", "clear"].into_iter().enumerate();
+            let chances = values.map(|(v, name)| (name.to_owned(), doubt[(v + n) % 3])).collect();
+            Detection { attributes: vec![("color".to_owned(), chances)], ..seen("white", y) }
+        };
+        let mut bench = Bench::with(&[of(0, -0.3), of(1, 0.0), of(2, 0.3)]);
+        let said = bench.says(&["metallic"]);
+        bench.hear(&said);
+        assert_eq!(bench.node.state().act.kind, ActKind::Ask, "{:?}", belief(bench.node.state()));
+        assert!(
+            bench.text().contains("left") || bench.text().contains("middle"),
+            "{}",
+            bench.text()
+        );
+        bench.check();
+    }
+}
+
+/// A detector whose labels the scene does not know puts nothing on the table.
+#[test]
+fn labels_that_the_scene_lacks_are_refused_with_its_names() {
+    let mut bench = Bench::new();
+    bench.start();
+    bench.looks(10, &[seen("a red block", 0.0), seen("a blue block", 0.3)]);
+    assert_eq!(bench.objects(), [""; 0]);
+    assert!(bench.table.refusal.contains("`a red block`"), "{}", bench.table.refusal);
+    assert!(bench.table.refusal.contains("white2"), "{}", bench.table.refusal);
+    assert_eq!(bench.table.refused, 10);
+    bench.looks(3, &[seen("a red block", 0.0), seen("a big metal bowl", 0.3)]);
+    assert_eq!(bench.objects(), ["metal2-6"]);
+}
+
 #[test]
 fn a_change_by_hand_that_is_sent_again_takes_effect_once() {
     let mut bench = Bench::with(&[seen("white", 0.0)]);

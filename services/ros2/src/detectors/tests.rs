@@ -15,7 +15,9 @@ fn detector(labels: &[(&str, &str)]) -> TopicDetector {
     };
     let labels: Vec<_> = labels.iter().map(label).collect();
     let lens = Frame { name: "lens".to_owned(), xyz: [0.0, 0.0, 1.0], rpy: [0.0; 3] };
-    let detector = Detector::new("/camera", &labels, vec!["white".to_owned()], &[lens]);
+    let bowls = include_str!("../../../../config/scenes/bowls.toml");
+    let scene = scene::Scene::from_toml("bowls", bowls).unwrap();
+    let detector = Detector::new("/camera", &labels, Some(scene), &[lens]);
     TopicDetector { topic: "/camera".to_owned(), detector }
 }
 

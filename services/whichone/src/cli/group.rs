@@ -4,9 +4,9 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Args, ValueEnum};
+use command_line::args::seconds;
 
 use super::ConfigArgs;
-use super::talk::seconds;
 
 /// Arguments of `up`.
 #[derive(Debug, Args)]

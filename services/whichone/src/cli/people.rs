@@ -3,9 +3,10 @@
 use std::time::Duration;
 
 use clap::{Args, Subcommand};
+use command_line::args::seconds;
 use vocabulary::PersonId;
 
-use super::talk::{person, seconds};
+use super::talk::person;
 
 /// Arguments of `people`.
 #[derive(Debug, Args)]

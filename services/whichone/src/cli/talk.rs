@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Subcommand, ValueEnum};
+use command_line::args::seconds;
 use messages::Service;
 use vocabulary::{NotAPerson, PersonId};
 
@@ -191,14 +192,6 @@ fn journaled() -> impl TypedValueParser<Value = Service> {
         .try_map(|name| Service::from_name(&name).ok_or("no such service"))
 }
 
-/// Parses a timeout.
-pub(super) fn seconds(text: &str) -> Result<Duration, String> {
-    let wrong = || "expected seconds, e.g. 30".to_owned();
-    let seconds: f64 = text.trim().parse().map_err(|_| wrong())?;
-    let sensible = (0.0..=SECONDS_MAX).contains(&seconds);
-    sensible.then(|| Duration::from_secs_f64(seconds)).ok_or_else(wrong)
-}
-
 /// Reads the name of a person.
 pub(crate) fn person(name: &str) -> Result<PersonId, NotAPerson> {
     PersonId::new(name)
@@ -212,9 +205,6 @@ fn alternative(text: &str) -> Result<(String, f64), String> {
     let is_share = weight > 0.0 && weight < 1.0;
     is_share.then(|| (text.to_owned(), weight)).ok_or_else(|| wrong().to_owned())
 }
-
-/// Longest timeout, a month: sums of times stay far from overflow.
-const SECONDS_MAX: f64 = 2_678_400.0;
 
 #[cfg(test)]
 mod tests {

@@ -5,6 +5,9 @@ use std::time::Duration;
 
 use command_line::Outcome;
 use command_line::output::Output;
+use laboratory::args::{RecordVerb, RecorderArgs};
+use laboratory::recordings;
+use messages::Service;
 use rustix::event::{PollFd, PollFlags, poll};
 use rustix::process::{Pid, PidfdFlags, Signal, pidfd_open, pidfd_send_signal};
 use rustix::time::Timespec;
@@ -45,6 +48,18 @@ pub(super) fn on_service(
     out: &mut Output<'_>,
 ) -> Outcome {
     order(paths, &request(Target { service, wait_ms: ms(timeout) }), timeout, out)
+}
+
+/// Starts or stops the recorder, or shows its files.
+pub(super) fn recorder(paths: &GroupPaths, verb: RecordVerb, out: &mut Output<'_>) -> Outcome {
+    let service = || Service::Recorder.name().to_owned();
+    let args = |RecorderArgs { timeout }| ServiceArgs { service: service(), timeout };
+    match verb {
+        RecordVerb::Start(of) => on_service(paths, Request::Start, args(of), out),
+        RecordVerb::Stop(of) => on_service(paths, Request::Stop, args(of), out),
+        RecordVerb::List => recordings::list(paths, out),
+        RecordVerb::Open(of) => recordings::open(paths, &of, out),
+    }
 }
 
 /// Stops a service and starts it again.

@@ -1,6 +1,6 @@
 //! Looks: matching of detections to objects, new objects, and missed ones.
 
-use scene::{ObjectId, Perceived, likeliest};
+use scene::{ObjectId, Perceived, Scene, likeliest};
 use vocabulary::time::{Span, Time};
 
 use super::track::{Candidate, Track, named};
@@ -16,6 +16,8 @@ const MISS_MAX: Span = Span::from_ms(500);
 const CANDIDATE_FOR: Span = Span::from_ms(2_000);
 /// Distance within which a detection is of an object whatever it is taken for, metres.
 const SAME_PLACE_M: f64 = 0.03;
+/// Least probability of a class that a detection may confirm.
+const CLASS_MIN: f64 = 0.01;
 /// How far in the future a look may have been taken.
 const AHEAD: Span = Span::from_ms(50);
 
@@ -26,6 +28,7 @@ impl Tracker {
         &mut self,
         source: &str,
         look: &Look,
+        file: &Scene,
         hiding: &Hiding,
         now: Time,
     ) -> Result<(), Refusal> {
@@ -49,7 +52,7 @@ impl Tracker {
         let handling = hiding.handled.is_some();
         let seen: Vec<&Detection> =
             look.seen.iter().filter(|it| !(handling && is_near_arm(&it.xyz))).collect();
-        let shown = self.follow(source, &seen, hiding, at);
+        let shown = self.follow(source, (&seen, file), hiding, at);
         if look.whole {
             let span = before.map_or(Span(0), |before| at.since(before)).min(MISS_MAX);
             self.miss(source, &shown, hiding, span);
@@ -78,7 +81,7 @@ impl Tracker {
     fn follow(
         &mut self,
         source: &str,
-        seen: &[&Detection],
+        (seen, file): (&[&Detection], &Scene),
         hiding: &Hiding,
         at: Time,
     ) -> Vec<ObjectId> {
@@ -93,11 +96,11 @@ impl Tracker {
             let Some(detection) = left[detection].take() else { continue };
             shown.push(number);
             if hiding.handled != Some(number) {
-                track.see(source, detection, self.settings.moved_m, at);
+                track.see(source, (detection, file), self.settings.moved_m, at);
             }
         }
         for detection in left.into_iter().flatten() {
-            self.see_candidate(source, detection, &mut shown, at);
+            self.see_candidate(source, (detection, file), &mut shown, at);
         }
         shown
     }
@@ -125,7 +128,7 @@ impl Tracker {
     fn near(&self, estimate: &Estimate, detection: &Detection) -> Option<f64> {
         let far = distance(&estimate.place, &place(detection));
         let shares = |(name, p): &(String, f64)| {
-            *p > 0.0 && detection.classes.iter().any(|(other, q)| name == other && *q > 0.0)
+            *p >= CLASS_MIN && detection.classes.iter().any(|(other, q)| name == other && *q > 0.0)
         };
         let same = far <= SAME_PLACE_M || estimate.classes.iter().any(shares);
         (same && far <= self.settings.gate_m).then_some(far)
@@ -134,7 +137,7 @@ impl Tracker {
     fn see_candidate(
         &mut self,
         source: &str,
-        detection: &Detection,
+        (detection, file): (&Detection, &Scene),
         shown: &mut Vec<ObjectId>,
         at: Time,
     ) {
@@ -144,7 +147,7 @@ impl Tracker {
         let Some((_, n)) = known.min_by(|a, b| a.0.total_cmp(&b.0)) else {
             if self.candidates.len() < CANDIDATES_MAX {
                 self.candidates.push(Candidate {
-                    estimate: Estimate::new(detection),
+                    estimate: Estimate::new(detection, file),
                     track: named(source, detection),
                     source: source.to_owned(),
                     since: at,
@@ -162,7 +165,7 @@ impl Tracker {
             return;
         }
         candidate.note_beside(shown);
-        candidate.estimate.see(detection, self.settings.moved_m);
+        candidate.estimate.see(detection, file, self.settings.moved_m);
         (candidate.seen, candidate.track) = (at, named(source, detection));
         if candidate.estimate.count >= self.settings.appear {
             self.ripen(n, shown, at);

@@ -1,11 +1,10 @@
 //! One object that is followed, and one that may yet be.
 
-use scene::{ObjectId, Perceived};
+use scene::{ObjectId, Perceived, Scene};
 use vocabulary::time::{Span, Time};
 
-use super::CHANCE_STEP;
 use crate::Detection;
-use crate::estimate::{Estimate, difference, distance};
+use crate::estimate::{Estimate, differ, distance};
 
 /// Least number of looks without an object before it is gone.
 const MISSES_MIN: u32 = 5;
@@ -46,8 +45,14 @@ impl Candidate {
 }
 
 impl Track {
-    pub(super) fn see(&mut self, source: &str, detection: &Detection, moved_m: f64, at: Time) {
-        if self.estimate.see(detection, moved_m) {
+    pub(super) fn see(
+        &mut self,
+        source: &str,
+        (detection, file): (&Detection, &Scene),
+        moved_m: f64,
+        at: Time,
+    ) {
+        if self.estimate.see(detection, file, moved_m) {
             self.stood = at;
         }
         (self.seen, self.missed, self.misses) = (at, Span(0), 0);
@@ -77,9 +82,9 @@ impl Track {
         let none = Vec::new();
         let changed = |(name, chances): &(String, Vec<(String, f64)>)| {
             let known = object.attributes.iter().find(|(known, _)| known == name);
-            difference(chances, known.map_or(&none, |(_, known)| known)) > CHANCE_STEP
+            differ(chances, known.map_or(&none, |(_, known)| known))
         };
-        if difference(classes, &object.classes) > CHANCE_STEP || attributes.iter().any(changed) {
+        if differ(classes, &object.classes) || attributes.iter().any(changed) {
             (object.classes, object.attributes) = (classes.clone(), attributes.clone());
         }
     }

@@ -23,8 +23,9 @@ fn reported(hypotheses: Vec<Hypothesis>) -> Reported {
 }
 
 fn detector(labels: &[Label], frames: &[Frame]) -> Detector {
-    let names = ["white", "metal"].map(str::to_owned).to_vec();
-    Detector::new("/detections", labels, names, frames)
+    let bowls = include_str!("../../../../config/scenes/bowls.toml");
+    let scene = Scene::from_toml("bowls", bowls).unwrap();
+    Detector::new("/detections", labels, Some(scene), frames)
 }
 
 fn seen(sighting: &Sighting) -> &[Detection] {
@@ -115,7 +116,7 @@ fn message_in_an_unknown_frame_becomes_a_look_that_is_refused() {
 
 #[test]
 fn markers_are_sources_of_their_own_and_other_transforms_are_ignored() {
-    let mut detector = Detector::new("/tf", &[label("tag36h11:7", "white")], Vec::new(), &[]);
+    let mut detector = Detector::new("/tf", &[label("tag36h11:7", "white")], None, &[]);
     let marker = |id: &str| Reported::marker("base", id, pose([0.5, 0.0, 0.1]), [0.0; 36]);
     assert_eq!(detector.marker(1, 5, &marker("left_wrist")), None);
     assert_eq!(detector.counts(), UnusedCounts::default());

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use clap::{Args, Subcommand};
 
-use super::talk::seconds;
+use command_line::args::seconds;
 
 /// What `record` does.
 #[derive(Debug, Subcommand)]

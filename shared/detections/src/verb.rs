@@ -1,25 +1,23 @@
-//! `objects`: lists and changes the objects on the table, where they come from perception.
+//! Lists and changes the objects on the table, where they come from perception.
 
 use std::collections::BTreeMap;
-use std::io::BufRead;
 use std::time::{Duration, Instant};
 
 use command_line::Outcome;
 use command_line::output::Output;
 use config::Settings;
-use messages::{Change, Detection, Look, Service, Sighting, TableView, topics};
-use serde::Deserialize;
+use messages::{Change, Detection, Sighting, TableView, topics};
 use serde_json::{Value as Json, json};
+use service::Time;
 use service::bus::{EncodedReader, EncodedWriter};
 use service::client::{Client, Polling, random_number};
 use service::clock;
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 use service::view::quiet;
-use service::{Span, Time};
 
-use super::availability::Availability;
-use crate::cli::{ObjectsArgs, ObjectsVerb};
+use crate::args::{ObjectsArgs, ObjectsVerb};
+use crate::feed::feed;
 
 /// Interval at which a change is sent until it is answered.
 const RESEND_EVERY: Duration = Duration::from_millis(200);
@@ -30,21 +28,29 @@ struct Tables {
     latest: Option<TableView>,
 }
 
-/// Lists or changes the objects.
-pub(super) fn objects(paths: &GroupPaths, args: &ObjectsArgs, out: &mut Output<'_>) -> Outcome {
+/// Lists or changes the objects. `is_up` fails if the policy does nothing for now.
+///
+/// # Errors
+/// The objects are not perceived, the policy does not answer, or a change is refused.
+pub fn objects(
+    paths: &GroupPaths,
+    args: &ObjectsArgs,
+    is_up: impl FnOnce() -> Result<(), Failure>,
+    out: &mut Output<'_>,
+) -> Outcome {
     let client = Client::join(paths)?;
     let settings = Settings::load_snapshot(&paths.run())?;
     if !settings.group.perception.enabled {
         return Err(Failure::new(Exit::Usage, perception::Refusal::Off.to_string()));
     }
-    Availability::now(paths).require(Service::Policy)?;
+    is_up()?;
     let reader = client.bus().encoded_reader(&topics::OBJECTS)?;
     let mut tables = Tables { reader, latest: None };
     // Who only looks writes nothing: each writer that comes and goes has the policy connect once more.
     let sightings = || client.bus().encoded_writer(&topics::SIGHTING);
     let change = match args.what.as_ref().unwrap_or(&ObjectsVerb::List) {
         ObjectsVerb::List => return list(&mut tables, args.timeout, out),
-        ObjectsVerb::Feed => return feed(&sightings()?, out),
+        ObjectsVerb::Feed(args) => return feed(&sightings()?, args, &settings, out),
         ObjectsVerb::Add { class, place, values } => {
             let mut attributes: BTreeMap<String, Vec<(String, f64)>> = BTreeMap::new();
             for (attribute, value, p) in values {
@@ -186,102 +192,4 @@ fn json_of(view: &TableView) -> Json {
         "refused": view.refused,
         "refusal": view.refusal,
     })
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct FeedLine {
-    #[serde(default = "script")]
-    source: String,
-    #[serde(default = "base")]
-    frame: String,
-    /// Time since the look was taken, seconds.
-    #[serde(default)]
-    age_s: f64,
-    #[serde(default = "yes")]
-    whole: bool,
-    seen: Vec<FeedObject>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct FeedObject {
-    #[serde(default)]
-    track: String,
-    classes: BTreeMap<String, f64>,
-    #[serde(default)]
-    attributes: BTreeMap<String, BTreeMap<String, f64>>,
-    xyz: [f64; 3],
-    #[serde(default)]
-    yaw: f64,
-    /// Variances of x, y, z and yaw.
-    #[serde(default)]
-    variances: [f64; 4],
-}
-
-fn script() -> String {
-    "script".to_owned()
-}
-
-fn base() -> String {
-    "base".to_owned()
-}
-
-fn yes() -> bool {
-    true
-}
-
-/// Reports each line of standard input; a wrong one is told and skipped.
-fn feed(sightings: &EncodedWriter<Sighting>, out: &mut Output<'_>) -> Outcome {
-    let mut is_right = true;
-    for (n, line) in std::io::stdin().lock().lines().enumerate() {
-        let line = line.map_err(|error| Failure::new(Exit::NotReached, error.to_string()))?;
-        if line.trim().is_empty() {
-            continue;
-        }
-        let sent = sighting(&line, clock::now())
-            .and_then(|sighting| sightings.send(&sighting).map_err(|error| error.to_string()));
-        if let Err(error) = sent {
-            is_right = false;
-            out.json(&json!({ "line": n + 1, "error": error }))?;
-        }
-    }
-    Ok(if is_right { Exit::Ok } else { Exit::NotReached })
-}
-
-fn sighting(line: &str, now: Time) -> Result<Sighting, String> {
-    let line: FeedLine = serde_json::from_str(line).map_err(|error| error.to_string())?;
-    let seen = line.seen.into_iter().map(|it| Detection {
-        track: it.track,
-        classes: it.classes.into_iter().collect(),
-        attributes: (it.attributes.into_iter())
-            .map(|(name, values)| (name, values.into_iter().collect()))
-            .collect(),
-        xyz: it.xyz,
-        yaw: it.yaw,
-        variances: it.variances,
-    });
-    let at_ns = (now - Span::from_s(line.age_s)).ns();
-    let look = Look { at_ns, whole: line.whole, seen: seen.collect() };
-    let (source, frame) = (line.source, line.frame);
-    Ok(Sighting { key: random_number(), source, frame, change: Change::Look(look) })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn objects_feed_reads_looks_and_says_what_is_wrong() {
-        let line = r#"{"age_s": 0.5, "seen": [{"classes": {"white": 0.8, "metal": 0.2},
-            "attributes": {"color": {"white": 0.9}}, "xyz": [0.7, 0.1, -0.1]}]}"#;
-        let read = sighting(line, Time(2_000_000_000)).unwrap();
-        assert_eq!((read.source.as_str(), read.frame.as_str()), ("script", "base"));
-        let Change::Look(look) = read.change else { panic!("a look") };
-        assert_eq!((look.at_ns, look.whole, look.seen.len()), (1_500_000_000, true, 1));
-        assert_eq!(look.seen[0].attributes[0].1, [("white".to_owned(), 0.9)]);
-        let unknown = sighting(r#"{"seen": [], "colour": 1}"#, Time(0)).unwrap_err();
-        assert!(unknown.contains("colour"), "{unknown}");
-        assert!(sighting("nothing", Time(0)).is_err());
-    }
 }

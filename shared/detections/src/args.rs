@@ -1,10 +1,11 @@
-//! `objects`: what is on the table, where the objects come from perception.
+//! Arguments of `objects`.
 
+use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Args, Subcommand};
 
-use super::talk::seconds;
+use command_line::args::{key_and_value, seconds};
 
 /// Arguments of `objects`.
 #[derive(Debug, Args)]
@@ -50,7 +51,30 @@ pub enum ObjectsVerb {
         object: String,
     },
     /// Report looks of a camera: one JSON line each on standard input, docs/perception.md.
-    Feed,
+    Feed(FeedArgs),
+}
+
+/// Arguments of `objects feed`: what the lines of detectors leave out.
+#[derive(Clone, Debug, Args)]
+pub struct FeedArgs {
+    /// The camera that the pixels are of: its camera_info of ROS, YAML.
+    #[arg(long, value_name = "FILE")]
+    pub camera: Option<PathBuf>,
+    /// Frame of the camera, of group.perception.frames.
+    #[arg(long, value_name = "NAME", default_value = "base")]
+    pub frame: String,
+    /// Height in frame `base` at which objects without a depth are, metres.
+    #[arg(long, value_name = "Z", allow_negative_numbers = true)]
+    pub height: Option<f64>,
+    /// What a class id or a tag stands for; repeatable.
+    #[arg(long = "class", value_name = "ID=LABEL", value_parser = key_and_value)]
+    pub classes: Vec<(String, String)>,
+    /// Name of the detector.
+    #[arg(long, value_name = "NAME", default_value = "detector")]
+    pub source: String,
+    /// Age of a look when its line is read, seconds.
+    #[arg(long, value_name = "S", default_value = "0", value_parser = seconds)]
+    pub age: Duration,
 }
 
 /// A place in frame `base` of the robot.

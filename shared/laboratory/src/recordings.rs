@@ -1,22 +1,20 @@
-//! `record`: the recorder and its files.
+//! `record list` and `record open`: the files of the recorder.
 
 use std::fs;
 use std::path::PathBuf;
 
 use command_line::Outcome;
+use command_line::amounts;
 use command_line::output::{Output, note, table};
-use messages::Service;
 use recording::list::{Entry, State, entries};
 use recording::recover::merge;
 use recording::{EXTENSION, LeftOut};
 use serde_json::json;
-use service::control::Request;
 use service::exit::{Exit, Failure};
 use service::folders::make_private;
 use service::group::GroupPaths;
 
-use super::{operate, words};
-use crate::cli::{OpenArgs, RecordVerb, RecorderArgs, ServiceArgs};
+use crate::args::OpenArgs;
 
 /// How a recording is looked at.
 const HOW_TO_OPEN: &str = "open it in Foxglove or Lichtblick with the layout \
@@ -25,21 +23,11 @@ const HOW_TO_OPEN: &str = "open it in Foxglove or Lichtblick with the layout \
 /// Folder of the group for the copy that `record open` has made last.
 const COPIES: &str = "opened";
 
-/// Executes `record`.
-pub(super) fn record(paths: &GroupPaths, verb: RecordVerb, out: &mut Output<'_>) -> Outcome {
-    let recorder = |RecorderArgs { timeout }| ServiceArgs {
-        service: Service::Recorder.name().to_owned(),
-        timeout,
-    };
-    match verb {
-        RecordVerb::Start(args) => operate::on_service(paths, Request::Start, recorder(args), out),
-        RecordVerb::Stop(args) => operate::on_service(paths, Request::Stop, recorder(args), out),
-        RecordVerb::List => list(paths, out),
-        RecordVerb::Open(args) => open(paths, &args, out),
-    }
-}
-
-fn list(paths: &GroupPaths, out: &mut Output<'_>) -> Outcome {
+/// Lists the recordings, oldest first.
+///
+/// # Errors
+/// The output is closed.
+pub fn list(paths: &GroupPaths, out: &mut Output<'_>) -> Outcome {
     let entries = entries(&paths.recordings());
     if out.is_json() {
         for entry in &entries {
@@ -59,8 +47,8 @@ fn list(paths: &GroupPaths, out: &mut Output<'_>) -> Outcome {
         return Ok(Exit::Ok);
     }
     let row = |entry: &Entry| {
-        let length = entry.seconds().map_or("-".to_owned(), words::time);
-        let size = words::memory(entry.bytes >> 10);
+        let length = entry.seconds().map_or("-".to_owned(), amounts::time);
+        let size = amounts::memory(entry.bytes >> 10);
         vec![name(entry), length, size, state(entry).to_owned()]
     };
     let rows: Vec<_> = entries.iter().map(row).collect();
@@ -71,7 +59,11 @@ fn list(paths: &GroupPaths, out: &mut Output<'_>) -> Outcome {
     Ok(Exit::Ok)
 }
 
-fn open(paths: &GroupPaths, args: &OpenArgs, out: &mut Output<'_>) -> Outcome {
+/// Prints the path of a recording that viewers can open.
+///
+/// # Errors
+/// There is no such recording, or it cannot be read whole or copied.
+pub fn open(paths: &GroupPaths, args: &OpenArgs, out: &mut Output<'_>) -> Outcome {
     let folder = paths.recordings();
     let wanted = args.name.as_deref().unwrap_or_default();
     let found = entries(&folder).into_iter().rev().find(|entry| name(entry).starts_with(wanted));

@@ -1,0 +1,101 @@
+use std::path::Path;
+use std::time::Duration;
+
+use super::*;
+
+fn settings() -> Settings {
+    let config = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config"));
+    let frame =
+        "[{ name = \"lens\", xyz = [0.7, 0.1, 0.88], rpy = [3.141592653589793, 0.0, 0.0] }]";
+    let over = [("group.perception.frames".to_owned(), frame.to_owned())];
+    Settings::load(config, None, &over).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn args() -> FeedArgs {
+    FeedArgs {
+        camera: None,
+        frame: "base".to_owned(),
+        height: None,
+        classes: Vec::new(),
+        source: "detector".to_owned(),
+        age: Duration::ZERO,
+    }
+}
+
+/// What a line becomes: the detections in frame `base`, and the problems.
+fn read(args: &FeedArgs, line: &Json) -> Result<(Vec<Detection>, Vec<String>), String> {
+    let settings = settings();
+    let mut feed = Feed::new(args, &settings)?;
+    let mut problems = Vec::new();
+    let sighting = feed.sighting(&line.to_string(), Time(2_000_000_000), &mut problems)?;
+    let Change::Look(look) = sighting.change else { panic!("a look") };
+    let frames = &settings.group.perception.tracker.frames;
+    let (used, _) =
+        perception::in_base(frames, &sighting.frame, &look.seen, &settings.scene).unwrap();
+    Ok((used, problems))
+}
+
+fn camera() -> (tempfile::TempDir, FeedArgs) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("camera.yaml");
+    let yaml = "camera_matrix:\n  data: [500.0, 0.0, 320.0, 0.0, 500.0, 240.0, 0.0, 0.0, 1.0]\n";
+    std::fs::write(&path, yaml).unwrap();
+    let frame = "lens".to_owned();
+    (folder, FeedArgs { camera: Some(path), frame, ..args() })
+}
+
+fn assert_at(detection: &Detection, xyz: [f64; 3]) {
+    assert!(detection.xyz.iter().zip(xyz).all(|(a, b)| (a - b).abs() < 1e-9), "{detection:?}");
+}
+
+#[test]
+fn objects_feed_reads_looks_and_says_what_is_wrong() {
+    let line = json!({"age_s": 0.5, "seen": [{"classes": {"white": 0.8, "metal": 0.2},
+        "attributes": {"color": {"white": 0.9}}, "xyz": [0.7, 0.1, -0.1]}]});
+    let read_look = look(&line, Time(2_000_000_000)).unwrap();
+    assert_eq!((read_look.source.as_str(), read_look.frame.as_str()), ("script", "base"));
+    let Change::Look(look) = read_look.change else { panic!("a look") };
+    assert_eq!((look.at_ns, look.whole, look.seen.len()), (1_500_000_000, true, 1));
+    assert_eq!(look.seen[0].attributes[0].1, [("white".to_owned(), 0.9)]);
+    let unknown = read(&args(), &json!({"seen": [], "colour": 1})).unwrap_err();
+    assert!(unknown.contains("colour"), "{unknown}");
+    assert!(read(&args(), &json!("nothing")).is_err());
+    let person = json!({"seen": [{"classes": {"person": 0.9}, "xyz": [1.0, 0.0, 0.0]}]});
+    let (used, problems) = read(&args(), &person).unwrap();
+    assert!(used.is_empty() && problems[0].contains("no object `person`"), "{problems:?}");
+}
+
+#[test]
+fn boxes_become_objects_in_front_of_the_robot() {
+    let (_folder, at_height) = camera();
+    let bowl = json!([{"name": "white bowl", "confidence": 0.8,
+        "box": {"x1": 360.0, "y1": 230.0, "x2": 380.0, "y2": 250.0}}]);
+    let help = read(&at_height, &bowl).unwrap_err();
+    assert!(help.contains("--height"), "{help}");
+    let at_height = FeedArgs { height: Some(-0.12), ..at_height };
+    let (used, problems) = read(&at_height, &bowl).unwrap();
+    assert_eq!(problems, [""; 0]);
+    assert_at(&used[0], [0.8, 0.1, -0.12]);
+    assert_eq!(used[0].classes.len(), 3, "three white bowls: {used:?}");
+    assert!(read(&args(), &bowl).unwrap_err().contains("--camera"));
+    let classes = vec![("51".to_owned(), "metal".to_owned())];
+    let by_id = FeedArgs { classes, ..at_height };
+    let coco = json!([{"category_id": 51, "bbox": [310.0, 230.0, 20.0, 20.0], "score": 0.7, "depth": 0.9}]);
+    let (used, _) = read(&by_id, &coco).unwrap();
+    assert_at(&used[0], [0.7, 0.1, -0.02]);
+    assert_eq!(used[0].classes, [("metal".to_owned(), 0.7)]);
+}
+
+#[test]
+fn tags_and_poses_are_those_of_their_labels() {
+    let (_folder, lens) = camera();
+    let lens = FeedArgs { classes: vec![("7".to_owned(), "clear".to_owned())], ..lens };
+    let tag = json!([{"tag_family": "tag36h11", "tag_id": 7, "pose_t": [0.1, 0.0, 1.0]},
+        {"tag_family": "tag36h11", "tag_id": 8, "pose_t": [0.1, 0.0, 1.0]}]);
+    let (used, problems) = read(&lens, &tag).unwrap();
+    assert_at(&used[0], [0.8, 0.1, -0.12]);
+    assert_eq!((used.len(), used[0].track.as_str()), (1, "tag36h11:7"));
+    assert!(problems[0].contains("tag36h11:8"), "{problems:?}");
+    let frame = read(&FeedArgs { frame: "nose".to_owned(), ..lens }, &tag).unwrap_err();
+    assert!(frame.contains("unknown frame `nose`"), "{frame}");
+}
