@@ -93,6 +93,9 @@ recording_python() {
 # For simulated servos: the maker's library.
 servos_python() { python_with servos feetech-servo-sdk==1.0.0 pyserial==3.5; }
 
+# For servers of speech: the protocol's own package.
+wyoming_python() { python_with wyoming wyoming==1.10.2; }
+
 # For the ROS 2 node and the driver `trajectory`: Cyclone DDS, and ROS 2 Jazzy, whose packages are for Python 3.11
 # alone.
 cyclone_python() { python_with cyclone cyclonedds==11.0.1; }
@@ -186,12 +189,15 @@ prepare_tests() {
     WHICHONE_CYCLONE=$(cyclone_python) || without "ROS 2 node (no cyclonedds for python3)" ros2_cyclone
     WHICHONE_SERVOS=$(servos_python) ||
         without "simulated servos with the maker's library (no feetech-servo-sdk for python3)" makers_library
+    WHICHONE_WYOMING=$(wyoming_python) ||
+        without "speech servers of the package wyoming (not for python3 here)" wyoming_servers_
     WHICHONE_PHYSICS=$(physics_python) || without "picks in a physics engine (no MuJoCo for python3)" physics::
     WHICHONE_RECORDING_PYTHON=$(recording_python) ||
         without "recordings, metrics and schemas by other readers (no mcap and websockets for python3)" \
             recorded_dialogue_is_read live_view_ metrics_are_read_by_ schemas_accept_
     local name
-    for name in WHICHONE_PYTHON WHICHONE_CYCLONE WHICHONE_SERVOS WHICHONE_PHYSICS WHICHONE_RECORDING_PYTHON; do
+    for name in WHICHONE_PYTHON WHICHONE_CYCLONE WHICHONE_SERVOS WHICHONE_WYOMING WHICHONE_PHYSICS \
+        WHICHONE_RECORDING_PYTHON; do
         if [[ -n ${!name} ]]; then export "${name?}"; else unset "$name"; fi
     done
 }

@@ -71,4 +71,5 @@ targets! {
     messages_of_browsers "console"
     control_requests "control"
     spoken_and_typed_text "language"
+    events_of_speech_servers "wyoming"
 }

@@ -69,3 +69,4 @@ mod swap;
 mod trajectory;
 mod unusual_users;
 mod user_model;
+mod wyoming;

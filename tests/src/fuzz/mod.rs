@@ -20,6 +20,7 @@ mod ros1;
 mod scene;
 mod wav;
 mod wire;
+mod wyoming;
 
 use std::path::PathBuf;
 
@@ -39,7 +40,7 @@ pub struct Target {
 }
 
 /// Every target.
-pub const TARGETS: [Target; 14] = [
+pub const TARGETS: [Target; 15] = [
     Target { name: "journal", run: journal::run, seeds: journal::seeds, mutations: 1_000 },
     Target {
         name: "records",
@@ -59,6 +60,7 @@ pub const TARGETS: [Target; 14] = [
     Target { name: "console", run: console::run, seeds: console::seeds, mutations: 4_000 },
     Target { name: "control", run: control::run, seeds: control::seeds, mutations: 4_000 },
     Target { name: "language", run: language::run, seeds: language::seeds, mutations: 1_000 },
+    Target { name: "wyoming", run: wyoming::run, seeds: wyoming::seeds, mutations: 4_000 },
 ];
 
 /// Returns a target by its name.
