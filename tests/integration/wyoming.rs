@@ -41,10 +41,9 @@ impl Peer {
     }
 
     fn end(&mut self) {
-        for mut process in self.process.take() {
-            process.kill().unwrap();
-            process.wait().unwrap();
-        }
+        let Some(mut process) = self.process.take() else { return };
+        process.kill().unwrap();
+        process.wait().unwrap();
     }
 
     /// Returns a recording of `sound`, which the server takes for `words`.
@@ -100,7 +99,6 @@ fn wyoming_servers_hear_and_speak_and_are_replaced_while_they_are_away() {
     let request = peer.knows("my uncle plays the violin", "Get me the small white bowl, please.");
     let heard = group.must(&["listen", &request, "--json"]).json();
     assert_eq!(heard["note"], "get me the small white bowl please", "{heard}");
-    assert!(heard["confidence"].as_f64().unwrap() < 1.0, "{heard}");
     let mut latest = 0;
     answer_by_voice(&group, |answer| {
         // An answer counts for a question that has sounded.
@@ -119,11 +117,14 @@ fn wyoming_servers_hear_and_speak_and_are_replaced_while_they_are_away() {
     assert_eq!(says(&group), "");
 
     peer.end();
-    wait_for_words(&group, &peer, "get me the clear bowl");
+    let recording = spoken("get me the clear bowl", peer.folder.path());
+    let heard = group.must(&["listen", &recording, "--json"]).json();
+    assert!(heard["note"].as_str().unwrap().contains("clear bowl"), "{heard}");
     let status = says(&group);
     assert!(status.contains("built-in recogniser in place of tcp://127.0.0.1:"), "{status}");
     assert_eq!(group.await_pick(Some("clear"))["object"], "clear");
-    group.say("get me the bowl zebra");
+    // The answer to this is no line that was foreseen, and so cached.
+    group.say("get me the red bowl");
     wait_for("the voice in the server's place", 20.0, || {
         says(&group).contains("built-in voice in place of").then_some(())
     });
@@ -136,12 +137,6 @@ fn wyoming_servers_hear_and_speak_and_are_replaced_while_they_are_away() {
     drop(client);
     group.verify_journals();
     group.down();
-}
-
-/// Says words while the server is away: the built-in recogniser hears them.
-fn wait_for_words(group: &Group, peer: &Peer, words: &str) {
-    let heard = group.must(&["listen", &spoken(words, peer.folder.path()), "--json"]).json();
-    assert!(heard["note"].as_str().unwrap().contains("clear bowl"), "{heard}");
 }
 
 /// A server has 20 s for its words here: far more than a stop may take.

@@ -77,7 +77,7 @@ impl<'c> Connection<'c> {
             };
             match TcpStream::connect_timeout(&found, left) {
                 Ok(stream) => return Self::over(&stream, limit, is_cancelled),
-                Err(error) => last = ClientError::Unreachable(error.to_string()),
+                Err(error) => last = ClientError::Unreachable(error.kind().to_string()),
             }
         }
         Err(last)

@@ -41,7 +41,8 @@ fn invalid_overrides_are_reported() {
 
 #[test]
 fn servers_of_speech_need_an_address() {
-    let text = "voice = 'wyoming'\nrecogniser = 'wyoming'\n[wyoming]\nvoice = 'piper:1'\nspeaker = '3'";
+    let text =
+        "voice = 'wyoming'\nrecogniser = 'wyoming'\n[wyoming]\nvoice = 'piper:1'\nspeaker = '3'";
     let folder = Folder::new(&[("speech.toml", text)]);
     expect![[""]].assert_eq(&folder.complaints(None, &[]).join("\n"));
 }
