@@ -96,6 +96,9 @@ zeroconf_python() { python_with zeroconf zeroconf==0.154.0 ifaddr==0.2.0; }
 # For simulated servos: the maker's library.
 servos_python() { python_with servos feetech-servo-sdk==1.0.0 pyserial==3.5; }
 
+# For servers of speech: the protocol's own package.
+wyoming_python() { python_with wyoming wyoming==1.10.2; }
+
 # For the ROS 2 node and the driver `trajectory`: Cyclone DDS, and ROS 2 Jazzy, whose packages are for Python 3.11
 # alone.
 cyclone_python() { python_with cyclone cyclonedds==11.0.1; }
@@ -189,6 +192,8 @@ prepare_tests() {
     WHICHONE_CYCLONE=$(cyclone_python) || without "ROS 2 node (no cyclonedds for python3)" ros2_cyclone
     WHICHONE_SERVOS=$(servos_python) ||
         without "simulated servos with the maker's library (no feetech-servo-sdk for python3)" makers_library
+    WHICHONE_WYOMING=$(wyoming_python) ||
+        without "speech servers of the package wyoming (not for python3 here)" wyoming_servers_
     WHICHONE_PHYSICS=$(physics_python) || without "picks in a physics engine (no MuJoCo for python3)" physics::
     WHICHONE_RECORDING_PYTHON=$(recording_python) ||
         without "recordings, metrics and schemas by other readers (no mcap and websockets for python3)" \
@@ -197,8 +202,8 @@ prepare_tests() {
         without "discovery by another machine (no root, /dev/net/tun, iproute2 or zeroconf for python3)" \
             found_from_another_machine
     local name
-    for name in WHICHONE_PYTHON WHICHONE_CYCLONE WHICHONE_SERVOS WHICHONE_PHYSICS WHICHONE_RECORDING_PYTHON \
-        WHICHONE_ZEROCONF; do
+    for name in WHICHONE_PYTHON WHICHONE_CYCLONE WHICHONE_SERVOS WHICHONE_WYOMING WHICHONE_PHYSICS \
+        WHICHONE_RECORDING_PYTHON WHICHONE_ZEROCONF; do
         if [[ -n ${!name} ]]; then export "${name?}"; else unset "$name"; fi
     done
 }

@@ -72,4 +72,5 @@ targets! {
     control_requests "control"
     lines_of_detectors "detections"
     spoken_and_typed_text "language"
+    events_of_speech_servers "wyoming"
 }

@@ -70,3 +70,4 @@ mod swap;
 mod trajectory;
 mod unusual_users;
 mod user_model;
+mod wyoming;

@@ -14,19 +14,18 @@ use std::time::Duration;
 use config::Settings;
 use crossbeam_channel::{Receiver, Sender, bounded, unbounded};
 use messages::EarState;
-use speech_engines::recogniser::{Recogniser, RecogniserUnavailable, SecondOpinion};
+use speech_engines::recogniser::{Recogniser, RecogniserUnavailable, SecondOpinion, interim};
 use speech_engines::stream::SpeechSegment;
 use speech_engines::vad::SegmenterOptions;
 use speech_engines::worker_thread::{QueueError, WorkerThread, in_background};
 
 use crate::hearing::{Ensemble, Gate};
-use crate::{In, RecognitionInput, options};
+use crate::{Device, In, RecognitionInput, options};
 use early::EarlyResults;
 use worker::{Channels, Worker};
 
 mod doubt;
 mod early;
-mod interim;
 mod worker;
 
 /// Live utterances that may wait, and files.
@@ -75,17 +74,22 @@ impl AsrWorker {
         let score_min = speech.accept_score_min as f32;
         let backend = options::backend(speech, work);
         let model = speech.whisper_model.clone();
-        let open = move |closed: &AtomicBool| {
+        let mut limits = Limits::of(speech);
+        limits.patience += backend.server_limit();
+        let open = move |closed: &AtomicBool, events: &Sender<In<'static>>| {
             let gate = in_background(|| Gate::new(&scene, score_min));
             let (first, unpronounceable) = with_room(closed, || backend.open(&scene))?;
-            let second = model.map(|model| SecondOpinion::start(model, scene));
+            let events = events.clone();
+            let report = move |note| drop(events.send(In::Server { of: Device::Recogniser, note }));
+            let server = backend.server(&scene, Box::new(report));
+            let second = server.or_else(|| model.map(|model| SecondOpinion::start(model, scene)));
             Ok(Opened { first, second, unpronounceable, gate })
         };
-        Self::with(open, Limits::of(speech))
+        Self::with(open, limits)
     }
 
     fn with(
-        open: impl FnOnce(&AtomicBool) -> Result<Opened, String> + Send + 'static,
+        open: impl FnOnce(&AtomicBool, &Sender<In<'static>>) -> Result<Opened, String> + Send + 'static,
         limits: Limits,
     ) -> (Self, Receiver<In<'static>>) {
         let (hints, hinted) = bounded(HINTS_MAX);
@@ -98,14 +102,17 @@ impl AsrWorker {
             // Without a receiver of its events the worker has no more to do.
             let publish = |state| drop(events.send(In::RecogniserState(state)));
             publish(EarState::Loading);
-            let recognisers = open(&worker_closed).map(Opened::ready).inspect_err(|reason| {
-                tracing::warn!(reason, "speech cannot be recognised; typed text works");
-            });
+            let recognisers =
+                open(&worker_closed, &events).map(Opened::ready).inspect_err(|reason| {
+                    tracing::warn!(reason, "speech cannot be recognised; typed text works");
+                });
             publish(if recognisers.is_ok() { EarState::Ready } else { EarState::Off });
             let opener = recognisers.as_ref().ok().and_then(Ensemble::interim_decoder);
             let results = events.clone();
+            let publish =
+                move |sound, text| results.send(In::InterimResult { sound, text }).is_ok();
             let interim =
-                opener.map(|open| thread::spawn(move || interim::run(open, &spoken, &results)));
+                opener.map(|open| thread::spawn(move || interim::run(open, &spoken, publish)));
             let (closed, early) = (worker_closed, EarlyResults::default());
             let worker = Worker { recognisers, limits, closed, events, early, doubt: None };
             worker.run(&Channels { live: inputs, hints: &hinted, files: &recorded });

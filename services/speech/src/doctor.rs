@@ -2,18 +2,13 @@
 
 use std::io;
 use std::path::Path;
-use std::sync::{Arc, mpsc};
-use std::time::{Duration, Instant};
 
-use config::{MicrophoneMode, Recogniser, Settings, Voice};
+use config::{MicrophoneMode, Recogniser, Settings};
 use safe_files::TemporaryFolder;
-use service::Span;
 use service::inspection::Finding;
-use speech_engines::live_events::LiveEvent;
-use speech_engines::microphone::{Microphone, MicrophoneOptions, MicrophoneState};
+use speech_engines::microphone::Microphone;
 use speech_engines::recogniser::{Backend, second_opinion};
-use speech_engines::stream::PlaybackMask;
-use speech_engines::voice::{self, VoiceEvent, VoiceOptions, VoiceOutput};
+use speech_engines::voice::{Voice, VoiceOptions};
 
 use crate::options;
 
@@ -36,6 +31,11 @@ fn recogniser(settings: &Settings) -> Finding {
         Err(error) => return no_folder(WHAT, &error),
     };
     let backend = options::backend(&settings.speech, work.path());
+    if let Backend::Wyoming(options) = &backend
+        && let Err(reason) = options.client.examine()
+    {
+        return Finding::poor(WHAT, format!("{reason}; the built-in one takes its place"));
+    }
     match backend.open(&settings.scene) {
         Ok((_, unpronounceable)) if unpronounceable.is_empty() => Finding::good(
             WHAT,
@@ -44,6 +44,7 @@ fn recogniser(settings: &Settings) -> Finding {
                     format!("pocketsphinx with {}", options.model.display())
                 }
                 Backend::Command(options) => options.command.join(" "),
+                Backend::Wyoming(options) => options.client.address.to_string(),
             },
         ),
         Ok((_, words)) => {
@@ -70,7 +71,7 @@ fn second_recogniser(model: &Path, settings: &Settings) -> Finding {
 /// Starts the voice as the service does.
 fn voice(settings: &Settings) -> Finding {
     const WHAT: &str = "voice";
-    if settings.speech.voice == Voice::Print {
+    if settings.speech.voice == config::Voice::Print {
         return Finding::good(WHAT, "switched off (speech.voice)");
     }
     let work = match TemporaryFolder::new() {
@@ -79,21 +80,11 @@ fn voice(settings: &Settings) -> Finding {
     };
     // No prompt is spoken, so no audio is cached.
     let options = VoiceOptions { audio_dir: None, ..options::voice(&settings.speech, work.path()) };
-    let program = options.program.name();
-    let (_voice, events) = voice::Voice::start(options);
-    match events.recv() {
-        Ok(VoiceEvent::Output(VoiceOutput::Aloud(player))) => {
-            Finding::good(WHAT, format!("{program} through {}", player.program))
-        }
-        Ok(VoiceEvent::Output(VoiceOutput::Text { reason })) => {
-            Finding::poor(WHAT, format!("{reason}; questions are shown as text"))
-        }
-        _ => Finding::poor(WHAT, "it crashed; questions are shown as text"),
+    match Voice::try_out(options) {
+        Ok(what) => Finding::good(WHAT, what),
+        Err(reason) => Finding::poor(WHAT, reason),
     }
 }
-
-/// Time limit for the first samples of a microphone.
-const MICROPHONE_TIMEOUT: Duration = Duration::from_secs(3);
 
 /// Records for a moment as the service does.
 fn microphone(settings: &Settings) -> Finding {
@@ -101,37 +92,11 @@ fn microphone(settings: &Settings) -> Finding {
     if settings.speech.microphone.mode == MicrophoneMode::Off {
         return Finding::good(WHAT, "switched off (speech.microphone.mode)");
     }
-    let options = MicrophoneOptions { hands_free: true, ..options::microphone(&settings.speech) };
-    let programs = options.programs.len();
-    let (send, events) = mpsc::channel();
-    let sink = move |event| {
-        // Without a receiver the result is known already.
-        let _ = send.send(event);
-        Ok(())
-    };
-    let mask = Arc::new(PlaybackMask::new(Span::from_ms(0)));
-    let _microphone = Microphone::start(options, mask, Arc::default(), Box::new(sink));
-    let (until, mut failed) = (Instant::now() + MICROPHONE_TIMEOUT, Vec::new());
-    while failed.len() < programs {
-        let timeout = until.saturating_duration_since(Instant::now());
-        match events.recv_timeout(timeout) {
-            Ok(LiveEvent::Microphone(status)) => match status.state {
-                MicrophoneState::Listening => {
-                    return Finding::good(WHAT, format!("{} records", status.note));
-                }
-                MicrophoneState::Broken => failed.push(status.note),
-                _ => {}
-            },
-            Ok(_) => {}
-            Err(_) => {
-                failed.push("the program delivers no audio".to_owned());
-                break;
-            }
-        }
+    match Microphone::try_out(options::microphone(&settings.speech)) {
+        Ok(program) => Finding::good(WHAT, format!("{program} records")),
+        Err(why) => Finding::poor(
+            WHAT,
+            format!("{why}; help: connect one, or set a program in speech.microphone.command"),
+        ),
     }
-    let why = failed.join("; ");
-    Finding::poor(
-        WHAT,
-        format!("{why}; help: connect one, or set a program in speech.microphone.command"),
-    )
 }

@@ -53,6 +53,22 @@ pub enum In<'a> {
     RecogniserState(EarState),
     /// Progress of the voice.
     Playback(PlaybackEvent),
+    /// What stands in the place of a device's server and why; `None`: it works.
+    Server {
+        /// The device.
+        of: Device,
+        /// In words, for the operator.
+        note: Option<String>,
+    },
+}
+
+/// A device that may be a server elsewhere.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Device {
+    /// The recogniser.
+    Recogniser,
+    /// The voice.
+    Voice,
 }
 
 impl From<LiveEvent> for In<'_> {

@@ -32,7 +32,7 @@ use std::process::ExitCode;
 use utterance_intake::UtteranceIntake;
 
 pub use endpointing::{EarlyDecoding, Endpointing, PreparedJudge};
-pub use io::{In, Out, PlaybackRequest, Recognised, RecognisedSegment, RecognitionInput};
+pub use io::{Device, In, Out, PlaybackRequest, Recognised, RecognisedSegment, RecognitionInput};
 pub use messages::Hypothesis;
 pub use speech_engines::WHISPER;
 pub use speech_engines::live_events::MicrophoneStatus;
@@ -53,6 +53,9 @@ pub struct SpeechNode {
     intake: UtteranceIntake,
     player: PromptPlayer,
     next_send: Time,
+    /// What stands in the place of each device's server.
+    notes: [Option<String>; 2],
+    status: Option<String>,
 }
 
 /// Settings of the reducer.
@@ -81,7 +84,7 @@ impl Node for SpeechNode {
                 stop => intake.stop.restore(&stop),
             }
         }
-        Ok(Self { intake, player, next_send: Time(0) })
+        Ok(Self { intake, player, next_send: Time(0), notes: [None, None], status: None })
     }
 
     fn on(&mut self, event: Event<In<'_>>, now: Time, fx: &mut Fx) {
@@ -123,8 +126,12 @@ impl Node for SpeechNode {
         self.intake.accepted.pending_since()
     }
 
+    fn status(&self) -> Option<&str> {
+        self.status.as_deref()
+    }
+
     fn checkpoint(&self) -> Option<Vec<u8>> {
-        let Self { intake, player, next_send } = self;
+        let Self { intake, player, next_send, .. } = self;
         let later = (player.lines(), player.newest());
         postcard::to_stdvec(&(intake.checkpoint()?, player, next_send, later)).ok()
     }
@@ -140,7 +147,7 @@ impl Node for SpeechNode {
             player.restore_lines(lines, postcard::from_bytes(rest).unwrap_or_default());
         }
         let intake = UtteranceIntake::resume(config, &intake).ok_or_else(foreign)?;
-        Ok(Self { intake, player, next_send })
+        Ok(Self { intake, player, next_send, notes: [None, None], status: None })
     }
 
     fn snapshot(&self) -> Option<Vec<Record>> {
@@ -190,6 +197,11 @@ impl SpeechNode {
             In::Arm(status) => self.player.on_arm_status(&status),
             In::StopSettled(given) => self.intake.stop.settle(given, fx),
             In::Playback(event) => self.player.on_playback(event, now, fx),
+            In::Server { of, note } => {
+                self.notes[of as usize] = note;
+                let notes: Vec<&str> = self.notes.iter().flatten().map(String::as_str).collect();
+                self.status = (!notes.is_empty()).then(|| notes.join("; "));
+            }
         }
     }
 

@@ -4,22 +4,24 @@ use std::path::Path;
 
 use config::{MicrophoneMode, Recogniser, Speech};
 use speech_engines::microphone::MicrophoneOptions;
-use speech_engines::recogniser::{Backend, CommandOptions, PocketSphinxOptions};
+use speech_engines::recogniser::{Backend, CommandOptions, PocketSphinxOptions, WyomingOptions};
 use speech_engines::vad::SegmenterOptions;
-use speech_engines::voice::{Player, Program, VoiceMode, VoiceOptions};
+use speech_engines::voice::{Player, Program, ServerOptions, VoiceMode, VoiceOptions};
 
 /// Returns the recogniser, with work files in `work`.
 pub fn backend(speech: &Speech, work: &Path) -> Backend {
-    match speech.recogniser {
-        Recogniser::Command => {
+    let debian = PocketSphinxOptions::debian(work);
+    let model = speech.model_dir.clone().unwrap_or_else(|| debian.model.clone());
+    let built_in = PocketSphinxOptions { model, ..debian };
+    match (speech.recogniser, speech.wyoming.recogniser_client()) {
+        (Recogniser::Command, _) => {
             let command = speech.recogniser_command.clone().unwrap_or_default();
             Backend::Command(CommandOptions::new(command))
         }
-        _ => {
-            let options = PocketSphinxOptions::debian(work);
-            let model = speech.model_dir.clone().unwrap_or_else(|| options.model.clone());
-            Backend::PocketSphinx(PocketSphinxOptions { model, ..options })
+        (Recogniser::Wyoming, Some(client)) => {
+            Backend::Wyoming(WyomingOptions { client, built_in })
         }
+        _ => Backend::PocketSphinx(built_in),
     }
 }
 
@@ -57,7 +59,7 @@ pub fn voice(speech: &Speech, work: &Path) -> VoiceOptions {
     let espeak_ng = defaults.program;
     let (mode, program) = match speech.voice {
         config::Voice::Auto => (VoiceMode::Auto, espeak_ng),
-        config::Voice::EspeakNg => (VoiceMode::Aloud, espeak_ng),
+        config::Voice::EspeakNg | config::Voice::Wyoming => (VoiceMode::Aloud, espeak_ng),
         config::Voice::Flite => (VoiceMode::Aloud, Program::Flite("flite".into())),
         config::Voice::Command => {
             let words = speech.voice_command.clone().unwrap_or_default();
@@ -65,9 +67,11 @@ pub fn voice(speech: &Speech, work: &Path) -> VoiceOptions {
         }
         config::Voice::Print => (VoiceMode::Print, espeak_ng),
     };
+    let server = speech.wyoming.voice_client().filter(|_| speech.voice == config::Voice::Wyoming);
     VoiceOptions {
         mode,
         program,
+        server: server.map(|(client, voice)| ServerOptions { client, voice }),
         voice: speech.voice_name.clone(),
         words_per_minute: u16::try_from(speech.voice_words_per_minute).unwrap_or(u16::MAX),
         players,

@@ -10,8 +10,8 @@ mod stop_order;
 use crate::hearing::Rejected;
 use crate::record::Record;
 use crate::{
-    Config, Endpointing, Hypothesis, In, Out, PlaybackEvent, PlaybackRequest, PlaybackState,
-    PreparedJudge, Recognised, RecognisedSegment, SpeechNode,
+    Config, Device, Endpointing, Hypothesis, In, Out, PlaybackEvent, PlaybackRequest,
+    PlaybackState, PreparedJudge, Recognised, RecognisedSegment, SpeechNode,
 };
 use messages::{
     ActKind, Activity, AppliedMark, FixedText, GateVerdict, Injection, MessageRef,
@@ -322,6 +322,21 @@ fn own_line_heard_back_is_no_evidence() {
         let (receipt, outputs) = heard_after_a_question(after_s, text);
         assert_eq!(receipt.status.get(), ReceiptStatus::Accepted, "{text}");
         assert_eq!(outputs.stops_motion(), text == "stop");
+    }
+}
+
+#[test]
+fn status_names_what_stands_in_the_place_of_each_server() {
+    let mut speech = Speech::new();
+    let note = |text: &str| Some(text.to_owned());
+    for (of, note, expected) in [
+        (Device::Voice, note("v"), Some("v")),
+        (Device::Recogniser, note("r"), Some("r; v")),
+        (Device::Voice, None, Some("r")),
+        (Device::Recogniser, None, None),
+    ] {
+        speech.take(0.1, In::Server { of, note });
+        assert_eq!(speech.node.status(), expected);
     }
 }
 

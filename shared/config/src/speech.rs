@@ -47,6 +47,8 @@ pub struct Speech {
     pub recording_max: Duration,
     /// The microphone of the robot's computer.
     pub microphone: Microphone,
+    /// Servers of the Wyoming protocol.
+    pub wyoming: wyoming::Settings,
 }
 
 /// The microphone of the robot's computer.
@@ -85,6 +87,8 @@ pub enum Voice {
     Flite,
     /// The program of `voice_command`.
     Command,
+    /// The server of `wyoming.voice`.
+    Wyoming,
     /// No sound: the text alone.
     Print,
 }
@@ -98,6 +102,8 @@ pub enum Recogniser {
     PocketSphinx,
     /// A program of the operator's.
     Command,
+    /// The server of `wyoming.recogniser`.
+    Wyoming,
     /// None: typed text only.
     None,
 }
@@ -110,6 +116,7 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Speech {
             ("espeak-ng", Voice::EspeakNg),
             ("flite", Voice::Flite),
             ("command", Voice::Command),
+            ("wyoming", Voice::Wyoming),
             ("print", Voice::Print),
         ],
     );
@@ -119,9 +126,17 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Speech {
             ("auto", Recogniser::Auto),
             ("pocketsphinx", Recogniser::PocketSphinx),
             ("command", Recogniser::Command),
+            ("wyoming", Recogniser::Wyoming),
             ("none", Recogniser::None),
         ],
     );
+    let wyoming = f.table("wyoming", wyoming::read_settings);
+    if voice == Voice::Wyoming && wyoming.voice.is_none() {
+        f.problem("voice", "`wyoming` needs a server", "set `voice` in the table [wyoming]");
+    }
+    if recogniser == Recogniser::Wyoming && wyoming.recogniser.is_none() {
+        f.problem("recogniser", "`wyoming` needs a server", "set `recogniser` in [wyoming]");
+    }
     Speech {
         voice,
         voice_name: voice_name(f, voice),
@@ -141,6 +156,7 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Speech {
         utterance_bytes_max: f.whole("utterance_bytes_max", 16..=UTTERANCE_BYTES_MAX) as usize,
         recording_max: f.seconds("recording_s_max", 1.0..=600.0),
         microphone: f.table("microphone", microphone),
+        wyoming,
     }
 }
 

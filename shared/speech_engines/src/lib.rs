@@ -1,6 +1,3 @@
-//! Engines of speech: recognisers, voices, and the way of sound from a microphone or a client to
-//! them.
-//!
 //! Engines of speech: recognisers, voices, and the path of sound from microphones or clients.
 //!
 //! Invariant: none blocks its caller. Microphone, streams and [`Voice`](voice::Voice) work on
@@ -15,6 +12,7 @@ pub mod microphone;
 mod pronunciation;
 mod random;
 pub mod recogniser;
+mod server_state;
 pub mod stream;
 pub mod testing;
 pub mod unrecorded_sound;

@@ -21,6 +21,7 @@ mod ros1;
 mod scene;
 mod wav;
 mod wire;
+mod wyoming;
 
 use std::path::PathBuf;
 
@@ -61,6 +62,7 @@ pub const TARGETS: [Target; 15] = [
     Target { name: "control", run: control::run, seeds: control::seeds, mutations: 4_000 },
     Target { name: "detections", run: detections::run, seeds: detections::seeds, mutations: 1_000 },
     Target { name: "language", run: language::run, seeds: language::seeds, mutations: 1_000 },
+    Target { name: "wyoming", run: wyoming::run, seeds: wyoming::seeds, mutations: 4_000 },
 ];
 
 /// Returns a target by its name.

@@ -8,7 +8,7 @@ use speech_engines::audio::seconds;
 use speech_engines::recogniser::{FirstView, Opinion, PendingOpinion};
 use speech_engines::stream::SpeechSegment;
 
-use crate::hearing::{Ensemble, Heard, SecondView};
+use crate::hearing::Ensemble;
 
 /// An utterance that the second recogniser listens to while the first one decodes it. Dropping it
 /// makes it stop.
@@ -50,7 +50,7 @@ pub(super) struct Doubt {
     pub(super) sound: u64,
     /// The samples that were decoded.
     pub(super) segment: SpeechSegment,
-    first: FirstView,
+    pub(super) first: FirstView,
     pending: PendingOpinion,
     /// `true` if its end is certain, so that a result is owed.
     pub(super) is_owed: bool,
@@ -90,11 +90,5 @@ impl Doubt {
             Err(TryRecvError::Empty) if Instant::now() < self.pending.until() => None,
             Err(_) => Some(None),
         }
-    }
-
-    /// Returns the results of both recognisers; without an opinion it counts as late.
-    pub(super) fn heard(&self, opinion: Option<Opinion>) -> Heard {
-        let second = opinion.map_or(SecondView::Late, SecondView::Heard);
-        Heard { first: self.first.clone(), second }
     }
 }

@@ -44,7 +44,7 @@ fn worker(
 ) -> (AsrWorker, Receiver<In<'static>>) {
     let segmenter = SegmenterOptions::default();
     let limits = Limits { segmenter, longest_s: 10.0, patience: Duration::from_millis(600) };
-    let (worker, events) = AsrWorker::with(move |_| open(), limits);
+    let (worker, events) = AsrWorker::with(move |_, _| open(), limits);
     assert_eq!(next(&events), In::RecogniserState(EarState::Loading));
     (worker, events)
 }

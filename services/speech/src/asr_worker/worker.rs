@@ -26,12 +26,13 @@ const PIECE: usize = RATE_HZ as usize;
 
 /// The thread's side.
 pub(super) struct Worker {
+    /// Dropped first, so that the second recogniser stops.
+    pub(super) doubt: Option<Doubt>,
     pub(super) recognisers: Result<Ensemble, String>,
     pub(super) limits: Limits,
     pub(super) closed: Arc<AtomicBool>,
     pub(super) events: Sender<In<'static>>,
     pub(super) early: EarlyResults,
-    pub(super) doubt: Option<Doubt>,
 }
 
 /// The ends of the worker's channels.
@@ -102,11 +103,13 @@ impl Worker {
     }
 
     fn on_speech(&mut self, sound: u64, segment: SpeechSegment) {
-        if let Some(result) = self.early.take(&segment) {
-            return self.answer(sound, Ok(vec![result]));
+        let early = self.early.take(&segment);
+        if let Some(result) = early.as_ref().filter(|result| self.is_final(&result.heard.first)) {
+            return self.answer(sound, Ok(vec![result.clone()]));
         }
         let listening = self.second_listens(sound, &segment);
-        match self.ask_first(&segment) {
+        let first = early.map_or_else(|| self.ask_first(&segment), |result| Ok(result.heard.first));
+        match first {
             Err(reason) => self.answer(sound, Err(reason)),
             Ok(first) => match self.doubted(listening, &first) {
                 Some(mut doubt) => {
@@ -130,8 +133,10 @@ impl Worker {
         // If the user speaks on, the opinion is about half an utterance.
         let is_other = |doubt: &mut Doubt| !doubt.is_owed && !doubt.is_about(sound, &segment);
         self.doubt.take_if(is_other);
-        let listening =
-            self.doubt.is_none().then(|| self.second_listens(sound, &segment)).flatten();
+        // One that decides hears whole utterances only: a server would work on each piece.
+        let is_asked =
+            self.doubt.is_none() && !self.recognisers.as_ref().is_ok_and(Ensemble::second_decides);
+        let listening = is_asked.then(|| self.second_listens(sound, &segment)).flatten();
         // A failure is retried when the end is certain, and reported then.
         let first = self.ask_first(&segment).ok();
         let Some(first) = first else { return self.publish_early(sound, &segment, None) };
@@ -153,9 +158,10 @@ impl Worker {
     /// Ends the question to the second recogniser, if one is asked, with its opinion or without.
     fn settle(&mut self, opinion: Option<Opinion>) {
         let Some(doubt) = self.doubt.take() else { return };
-        let heard = doubt.heard(opinion);
-        let Doubt { sound, segment, is_owed, .. } = doubt;
-        let result = self.result(&segment, heard, false);
+        let Doubt { sound, segment, first, is_owed, .. } = doubt;
+        let recognisers = self.recognisers.as_ref().map_err(Clone::clone);
+        let heard = recognisers.map(|recognisers| recognisers.heard(first, opinion));
+        let result = heard.and_then(|heard| self.result(&segment, heard, false));
         if is_owed {
             return self.answer(sound, result.map(|result| vec![result]));
         }
@@ -163,6 +169,12 @@ impl Worker {
             self.publish_early(sound, &segment, Some(result.clone()));
             self.early.keep(segment, result);
         }
+    }
+
+    /// Returns whether no second recogniser decides about an utterance that was decoded early.
+    fn is_final(&self, first: &FirstView) -> bool {
+        let is_open = |it: &Ensemble| it.second_decides() && it.is_in_doubt(&first.hypotheses);
+        !self.recognisers.as_ref().is_ok_and(is_open)
     }
 
     /// Has the second recogniser listen while the first one decodes.

@@ -52,12 +52,32 @@ impl Ensemble {
         self.first.recognise(pcm, speech)
     }
 
-    /// Returns whether the first recogniser's hypotheses are worth a second opinion. A stop waits
-    /// for none.
+    /// Returns whether the second recogniser decides alone; see [`SecondOpinion::decides`].
+    pub fn second_decides(&self) -> bool {
+        self.second.as_ref().is_some_and(SecondOpinion::decides)
+    }
+
+    /// Returns whether a second recogniser is to be asked: one that decides always, another one if
+    /// the first one's hypotheses are worth it. A stop waits for none.
     pub fn is_in_doubt(&self, first: &[Hypothesis]) -> bool {
-        let is_open =
-            |best: &Hypothesis| !language::is_stop(&best.text) && !self.gate.is_clear(first);
-        self.second.is_some() && first.first().is_some_and(is_open)
+        let Some(second) = &self.second else { return false };
+        let best = first.first();
+        let is_stop = best.is_some_and(|best| language::is_stop(&best.text));
+        !is_stop && (second.decides() || best.is_some() && !self.gate.is_clear(first))
+    }
+
+    /// Returns the views of an utterance about which the second recogniser was asked; without its
+    /// opinion it was late.
+    pub fn heard(&self, first: FirstView, opinion: Option<Opinion>) -> Heard {
+        match opinion {
+            None => Heard { first, second: SecondView::Late },
+            // Lengths of the first one's words say nothing about other words.
+            Some(opinion) if self.second_decides() => {
+                let first = FirstView { hypotheses: opinion.alone(), words_s: None, ..first };
+                Heard { first, second: SecondView::NotAsked }
+            }
+            Some(opinion) => Heard { first, second: SecondView::Heard(opinion) },
+        }
     }
 
     /// Lets the second recogniser listen, if there is one and it is free. Beginning together with
@@ -93,7 +113,7 @@ impl Ensemble {
             let is_there = wait(pending.opinion(), pending.until());
             pending.opinion().try_recv().ok().filter(|_| is_there)
         });
-        Ok(Heard { first, second: opinion.map_or(SecondView::Late, SecondView::Heard) })
+        Ok(self.heard(first, opinion))
     }
 
     /// Returns the hypotheses that count for the samples, in which `speech` are those of the voice.

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::{In, PlaybackState, options};
+use crate::{Device, In, PlaybackState, options};
 use config::Settings;
 use service::clock;
 use service::worker_channel::DeviceSender;
@@ -46,6 +46,7 @@ pub(super) fn start(
             }
             inbox.send(In::Playback(event))
         }
+        VoiceEvent::Server(note) => inbox.send(In::Server { of: Device::Voice, note }),
     });
     voice
 }

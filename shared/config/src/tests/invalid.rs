@@ -40,6 +40,14 @@ fn invalid_overrides_are_reported() {
 }
 
 #[test]
+fn servers_of_speech_need_an_address() {
+    let text =
+        "voice = 'wyoming'\nrecogniser = 'wyoming'\n[wyoming]\nvoice = 'piper:1'\nspeaker = '3'";
+    let folder = Folder::new(&[("speech.toml", text)]);
+    expect![[""]].assert_eq(&folder.complaints(None, &[]).join("\n"));
+}
+
+#[test]
 fn a_missing_folder_is_reported() {
     let missing = Folder::new(&[]).path().join("cofnig");
     let error = crate::Settings::load(&missing, None, &[]).unwrap_err().to_string();

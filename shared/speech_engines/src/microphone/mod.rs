@@ -9,10 +9,12 @@ mod level;
 mod recorder;
 mod worker;
 
-use std::sync::Arc;
-use std::time::Duration;
+use std::sync::{Arc, mpsc};
+use std::time::{Duration, Instant};
 
-use crate::live_events::Sink;
+use vocabulary::time::Span;
+
+use crate::live_events::{LiveEvent, Sink};
 use crate::stream::{Closings, PlaybackMask};
 use crate::vad::SegmenterOptions;
 use crate::worker_thread::{QueueError, WorkerThread};
@@ -51,6 +53,9 @@ impl MicrophoneOptions {
     }
 }
 
+/// Time limit for the first samples of a program that is tried out.
+const TRY_OUT: Duration = Duration::from_secs(3);
+
 /// A request to record one utterance.
 #[derive(Clone, Copy, Debug)]
 struct Talk {
@@ -73,6 +78,39 @@ impl Microphone {
             worker::Worker::new(options, mask, closings, sink).run(requests);
         };
         Self(WorkerThread::start(1, run))
+    }
+
+    /// Records for a moment, whatever the mode. Returns the program that records.
+    ///
+    /// # Errors
+    /// Why none does.
+    pub fn try_out(options: MicrophoneOptions) -> Result<String, String> {
+        let options = MicrophoneOptions { hands_free: true, ..options };
+        let programs = options.programs.len();
+        let (send, events) = mpsc::channel();
+        let sink = move |event| {
+            // Without a receiver the result is known already.
+            let _ = send.send(event);
+            Ok(())
+        };
+        let mask = Arc::new(PlaybackMask::new(Span::from_ms(0)));
+        let _microphone = Self::start(options, mask, Arc::default(), Box::new(sink));
+        let (until, mut failed) = (Instant::now() + TRY_OUT, Vec::new());
+        while failed.len() < programs {
+            match events.recv_timeout(until.saturating_duration_since(Instant::now())) {
+                Ok(LiveEvent::Microphone(status)) => match status.state {
+                    MicrophoneState::Listening => return Ok(status.note),
+                    MicrophoneState::Broken => failed.push(status.note),
+                    _ => {}
+                },
+                Ok(_) => {}
+                Err(_) => {
+                    failed.push("the program delivers no audio".to_owned());
+                    break;
+                }
+            }
+        }
+        Err(failed.join("; "))
     }
 
     /// Records one utterance with the number `sound`, from now on for `longest` at most. The

@@ -3,14 +3,17 @@
 mod command;
 mod ffi;
 mod first_view;
+pub mod interim;
 mod pocketsphinx;
 mod scene_files;
 pub mod second_opinion;
+mod server;
 mod word_confidence;
 
 use std::io;
 use std::ops::Range;
 use std::path::Path;
+use std::time::Duration;
 
 use scene::Scene;
 
@@ -20,6 +23,7 @@ pub use command::{Command, CommandOptions};
 pub use first_view::FirstView;
 pub use pocketsphinx::{PocketSphinx, PocketSphinxOptions};
 pub use second_opinion::{Opinion, PendingOpinion, SecondOpinion};
+pub use server::{Report, WyomingOptions};
 
 /// Error of decoding an utterance.
 ///
@@ -105,6 +109,17 @@ pub trait InterimDecoder: Send {
     fn decode(&mut self, pcm: &[i16]) -> Result<String, RecogniseError>;
 }
 
+/// Opens the offline recogniser: a good part of the cost of starting the group, during which
+/// utterances wait.
+fn built_in(
+    scene: &Scene,
+    options: &PocketSphinxOptions,
+) -> Result<PocketSphinx, RecogniserUnavailable> {
+    in_background(|| PocketSphinx::open(scene, options))
+}
+
+/// Time that a client notices the end of its limit late.
+const SLACK: Duration = Duration::from_millis(100);
 /// Hypotheses per utterance.
 const N_BEST_MAX: usize = 5;
 
@@ -115,6 +130,8 @@ pub enum Backend {
     PocketSphinx(PocketSphinxOptions),
     /// A program chosen by the operator.
     Command(CommandOptions),
+    /// A server of the Wyoming protocol, which decides. The offline recogniser listens beside it.
+    Wyoming(WyomingOptions),
 }
 
 impl Backend {
@@ -128,12 +145,31 @@ impl Backend {
     ) -> Result<(Box<dyn Recogniser>, Vec<String>), RecogniserUnavailable> {
         Ok(match self {
             Self::PocketSphinx(options) => {
-                // A good part of the cost of starting the group; utterances wait meanwhile.
-                let recogniser = in_background(|| PocketSphinx::open(scene, options))?;
+                let recogniser = built_in(scene, options)?;
                 let unpronounceable = recogniser.unpronounceable().to_vec();
                 (Box::new(recogniser), unpronounceable)
             }
             Self::Command(options) => (Box::new(Command::open(options.clone())?), Vec::new()),
+            Self::Wyoming(WyomingOptions { built_in: options, .. }) => {
+                (server::beside(built_in(scene, options))?, Vec::new())
+            }
         })
+    }
+
+    /// Starts the server's client, if there is one: it decides in place of the recogniser of
+    /// [`Self::open`]. `report` is called on a thread of its own.
+    pub fn server(&self, scene: &Scene, report: Report) -> Option<SecondOpinion> {
+        match self {
+            Self::Wyoming(options) => Some(server::start(options, scene, report)),
+            Self::PocketSphinx(_) | Self::Command(_) => None,
+        }
+    }
+
+    /// Returns the longest time until the server's answer, or zero without a server.
+    pub fn server_limit(&self) -> Duration {
+        match self {
+            Self::Wyoming(WyomingOptions { client, .. }) => client.connect + client.answer + SLACK,
+            Self::PocketSphinx(_) | Self::Command(_) => Duration::ZERO,
+        }
     }
 }

@@ -12,6 +12,7 @@ mod options;
 mod player;
 mod program;
 mod prompt_audio_cache;
+mod server;
 mod synthesis;
 mod trim;
 
@@ -31,6 +32,7 @@ pub use player::Player;
 pub use program::Program;
 pub use prompt_audio_cache::CACHED_MAX;
 use prompt_audio_cache::PromptAudioCache;
+pub use server::ServerOptions;
 use synthesis::{FORESEEN_MAX, Sound};
 pub use synthesis::{SynthesisError, Synthesiser};
 
@@ -73,6 +75,8 @@ pub enum VoiceOutput {
 pub enum VoiceEvent {
     /// The output of the voice; the first event.
     Output(VoiceOutput),
+    /// What stands in the server's place and why, whenever that changes; `None`: it works.
+    Server(Option<String>),
     /// Progress of a playback.
     Playback(PlaybackEvent),
 }
@@ -110,11 +114,34 @@ impl Voice {
                 let (generation, mut foreseen) = (current, options.foreseen);
                 foreseen.truncate(FORESEEN_MAX);
                 foreseen.reverse();
-                Speaker { mode, output, synthesiser, cache, events, generation, foreseen }
+                let noted = None;
+                Speaker { mode, output, synthesiser, cache, events, generation, foreseen, noted }
                     .run(prompts);
             }
         });
         (Self { generation, thread }, happened)
+    }
+
+    /// Starts the voice without a prompt. Returns what speaks, and through which player.
+    ///
+    /// # Errors
+    /// Why prompts are shown as text, or why another voice takes the server's place.
+    pub fn try_out(options: VoiceOptions) -> Result<String, String> {
+        let own = options.program.name();
+        let server = options.server.as_ref().map(|server| server.client.examine());
+        let (_voice, events) = Self::start(options);
+        let player = match events.recv() {
+            Ok(VoiceEvent::Output(VoiceOutput::Aloud(player))) => player.program,
+            Ok(VoiceEvent::Output(VoiceOutput::Text { reason })) => {
+                return Err(format!("{reason}; questions are shown as text"));
+            }
+            _ => return Err("it crashed; questions are shown as text".to_owned()),
+        };
+        match server {
+            None => Ok(format!("{own} through {player}")),
+            Some(Ok(server)) => Ok(format!("{server} through {player}")),
+            Some(Err(reason)) => Err(format!("{reason}; {own} takes its place")),
+        }
     }
 
     /// Queues a prompt. `playback` identifies it in the events, `file` is its sound's in the cache.
@@ -172,6 +199,8 @@ struct Speaker {
     generation: Arc<AtomicU64>,
     /// Prompts to synthesise in advance, the most likely last.
     foreseen: Vec<String>,
+    /// The published note about the server.
+    noted: Option<String>,
 }
 
 /// Time beyond the duration of the audio: opening the device and draining its buffer.
@@ -202,12 +231,15 @@ impl Speaker {
                 Err(TryRecvError::Disconnected) => return None,
                 Err(TryRecvError::Empty) => {}
             }
-            let is_aloud = matches!(self.output, VoiceOutput::Aloud(_));
-            let Some(text) = self.foreseen.pop().filter(|_| is_aloud) else {
+            self.publish_note();
+            // What stands in a server's place would not last.
+            let is_ahead = matches!(self.output, VoiceOutput::Aloud(_)) && self.noted.is_none();
+            let Some(text) = is_ahead.then(|| self.foreseen.pop()).flatten() else {
                 return prompts.recv().ok();
             };
             let is_cancelled = || !prompts.is_empty();
             match self.synthesiser.speak(&text, is_cancelled) {
+                Ok(_) if self.synthesiser.note().is_some() => self.foreseen.push(text),
                 Ok(_) => {}
                 Err(SynthesisError::Cancelled) => self.foreseen.push(text),
                 // A failing prompt reports its error when it is spoken.
@@ -235,7 +267,9 @@ impl Speaker {
         };
         let current = Arc::clone(&self.generation);
         let is_cancelled = || prompt.generation < current.load(Ordering::SeqCst);
-        match self.synthesiser.speak(&prompt.text, is_cancelled) {
+        let synthesised = self.synthesiser.speak(&prompt.text, is_cancelled);
+        self.publish_note();
+        match synthesised {
             Ok(Some(sound)) => {
                 self.store(prompt, &sound);
                 self.play(prompt, &sound, &player)
@@ -251,6 +285,16 @@ impl Speaker {
 
     fn send(&self, prompt: &Prompt, state: PlaybackState) -> Result<(), SendError<VoiceEvent>> {
         self.events.send(VoiceEvent::Playback(PlaybackEvent { playback: prompt.playback, state }))
+    }
+
+    /// Publishes the note about the server if it has changed.
+    fn publish_note(&mut self) {
+        let note = self.synthesiser.note();
+        if note != self.noted.as_deref() {
+            self.noted = note.map(str::to_owned);
+            // A missing receiver is noticed at the end of the prompt.
+            let _ = self.events.send(VoiceEvent::Server(self.noted.clone()));
+        }
     }
 
     fn begin(&self, prompt: &Prompt) {

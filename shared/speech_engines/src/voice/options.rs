@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::{Player, Program};
+use super::{Player, Program, ServerOptions};
 
 /// Presentation of prompts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -21,8 +21,10 @@ pub enum VoiceMode {
 pub struct VoiceOptions {
     /// Presentation of prompts.
     pub mode: VoiceMode,
-    /// The synthesis program.
+    /// The synthesis program; the one in the server's place, if there is a server.
     pub program: Program,
+    /// A server that synthesises as long as it works.
+    pub server: Option<ServerOptions>,
     /// The program's name of a voice, e.g. `en-us`.
     pub voice: String,
     /// Pace, words per minute.
@@ -43,6 +45,7 @@ impl VoiceOptions {
         Self {
             mode: VoiceMode::Auto,
             program: Program::EspeakNg("espeak-ng".into()),
+            server: None,
             voice: "en-us".to_owned(),
             words_per_minute: 150,
             players: Player::default_players(),

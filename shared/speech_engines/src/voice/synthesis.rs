@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
+use super::server::Server;
 use super::{VoiceOptions, trim};
 use crate::audio::{RATE_HZ, read_wav, write_wav};
 use crate::child_process::{ChildProcess, End, ProcessError};
@@ -32,6 +33,7 @@ pub(super) struct Sound {
 /// Synthesises prompts, each once while it is cached.
 pub struct Synthesiser {
     options: VoiceOptions,
+    server: Option<Server>,
     /// Texts and their audio, the latest last.
     cache: VecDeque<(String, Sound)>,
     /// Number of synthesised prompts: numbers the files.
@@ -50,9 +52,16 @@ const CACHED_MAX: usize = 2 * FORESEEN_MAX;
 pub(super) const FORESEEN_MAX: usize = 64;
 
 impl Synthesiser {
-    /// Returns a synthesiser with program, voice, pace and folder of the options.
+    /// Returns a synthesiser with program, server, voice, pace and folder of the options.
     pub fn new(options: &VoiceOptions) -> Self {
-        Self { options: options.clone(), cache: VecDeque::new(), count: 0 }
+        let server = options.server.clone().map(Server::new);
+        Self { options: options.clone(), server, cache: VecDeque::new(), count: 0 }
+    }
+
+    /// Returns what stands in the server's place and why, for the operator; `None` if it works, or
+    /// there is none.
+    pub(super) fn note(&self) -> Option<&str> {
+        self.server.as_ref().and_then(|server| server.state.note())
     }
 
     /// Synthesises a text as samples at [`RATE_HZ`].
@@ -67,7 +76,7 @@ impl Synthesiser {
     }
 
     /// Synthesises a text as a WAV file; `None` if it has no words. The file remains until
-    /// [`CACHED_MAX`] other prompts were synthesised.
+    /// [`CACHED_MAX`] other prompts were synthesised; one in a server's place until the next.
     pub(super) fn speak(
         &mut self,
         text: &str,
@@ -81,17 +90,31 @@ impl Synthesiser {
             return Ok(Some(known));
         }
         let file = self.file(&format!("sentence-{:03}.wav", self.count % (CACHED_MAX + 1)))?;
-        let VoiceOptions { program, voice, words_per_minute, .. } = &self.options;
-        let command = program.speak(&text, voice, *words_per_minute, &file);
-        self.run(command, is_cancelled)?;
+        let by_server = match &mut self.server {
+            Some(server) => server.speak(&text, &file, &is_cancelled)?,
+            None => false,
+        };
+        let in_place = self.server.is_some() && !by_server;
+        let file = if in_place { self.file("in-place.wav")? } else { file };
+        if !by_server {
+            let VoiceOptions { program, voice, words_per_minute, .. } = &self.options;
+            self.run(program.speak(&text, voice, *words_per_minute, &file), is_cancelled)?;
+        }
         let seconds = trim::trim(&file)?;
         let sound = Sound { file, seconds };
+        // The server may work the next time.
+        if !in_place {
+            self.keep(text, sound.clone());
+        }
+        Ok(Some(sound))
+    }
+
+    fn keep(&mut self, text: String, sound: Sound) {
         self.count += 1;
         if self.cache.len() == CACHED_MAX {
             self.cache.pop_front();
         }
-        self.cache.push_back((text, sound.clone()));
-        Ok(Some(sound))
+        self.cache.push_back((text, sound));
     }
 
     /// Returns the audio of an earlier prompt if it still exists.

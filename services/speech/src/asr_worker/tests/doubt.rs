@@ -126,6 +126,53 @@ fn asr_worker_answers_with_the_first_opinion_where_the_second_is_late() {
     }
 }
 
+/// Starts a worker with a second recogniser that decides.
+fn with_server() -> (AsrWorker, Receiver<In<'static>>, Receiver<usize>, Sender<()>) {
+    let ((heard, hears), (go, permission)) = (unbounded(), unbounded());
+    let second = SecondOpinion::deciding(move || Box::new(Sure { heard, permission }));
+    let opened = Opened { second: Some(second), ..alone(Unsure) };
+    let (worker, events) = worker(move || Ok(opened));
+    next(&events);
+    (worker, events, hears, go)
+}
+
+#[test]
+fn asr_worker_takes_the_words_of_a_server_once_for_each_whole_utterance() {
+    let (worker, events, hears, go) = with_server();
+    for pause in [512, 3_200] {
+        worker.decode_early(1, paused(16_000, pause));
+        let found = early(&events);
+        assert!(!found.awaits_second && text(&found) == "right", "{found:?}");
+    }
+    let end = paused(16_000, 3_200);
+    worker.decode_early(1, end.clone());
+    early(&events);
+    worker.submit(1, RecognitionInput::Speech(end)).unwrap();
+    go.send(()).unwrap();
+    let decided = answer(&events);
+    assert_eq!((text(&decided), &decided.heard.second), ("white", &SecondView::NotAsked));
+    let Ok([white]) = decided.hypotheses.as_deref() else { panic!("{decided:?}") };
+    assert!(white.word_confidence[0] < 1.0, "{white:?}");
+    assert_eq!(hears.try_iter().collect::<Vec<_>>(), [19_200], "not for the pauses");
+}
+
+#[test]
+fn asr_worker_stops_at_once_while_a_server_is_slow() {
+    let (worker, events, hears, _go) = with_server();
+    worker.submit(1, RecognitionInput::Speech(paused(16_000, 512))).unwrap();
+    hears.recv_timeout(PATIENCE).unwrap();
+    let stop = paused(4_000, 512);
+    worker.decode_early(2, stop.clone());
+    assert_eq!(text(&early(&events)), "stop", "while the first one waits");
+    worker.submit(2, RecognitionInput::Speech(stop)).unwrap();
+    // The first one's result comes first, by the built-in recogniser, and the stop asks no one.
+    let first = answer(&events);
+    assert_eq!((text(&first), &first.heard.second), ("right", &SecondView::Late));
+    let stop = answer(&events);
+    assert_eq!((text(&stop), &stop.heard.second), ("stop", &SecondView::NotAsked));
+    assert!(hears.is_empty());
+}
+
 #[test]
 fn asr_worker_asks_for_no_second_opinion_on_a_stop() {
     let (worker, events, _hears, _go) = unsure();

@@ -2,8 +2,11 @@
 //! recogniser's texts, and adds words of its own. It needs a model file of the operator's, and the
 //! feature `whisper`, because building its library takes a C++ compiler, cmake and libclang.
 //!
-//! Invariant: it never acts alone and never delays. Without it, and if it is late, the first
-//! recogniser's hypotheses count as they are.
+//! Another kind of second recogniser decides alone: one that the operator chose, with the built-in
+//! one beside it.
+//!
+//! Invariant: the network never acts alone, and no second recogniser delays beyond its limit.
+//! Without one, and if it is late, the first recogniser's hypotheses count as they are.
 
 mod combine;
 #[cfg(feature = "whisper")]
@@ -16,7 +19,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use crossbeam_channel::{Receiver, Sender, bounded};
+use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 use scene::Scene;
 
 use super::RecogniserUnavailable;
@@ -38,6 +41,9 @@ pub struct Opinion {
 
 /// Probability of no speech from which on there is none: that of words hardly exceeds 0.3.
 const NO_SPEECH: f32 = 0.4;
+/// Confidence in each word of a recogniser that decides alone and states none. Recognisers of open
+/// vocabulary mistake a word in ten of short commands; a belief must not take them as certain.
+const CONFIDENCE: f32 = 0.9;
 
 impl Opinion {
     /// Returns whether the network heard no speech.
@@ -48,6 +54,13 @@ impl Opinion {
     /// Returns the hypotheses of both recognisers, heaviest first.
     pub fn combined_with(&self, first: &[Hypothesis]) -> Vec<Hypothesis> {
         combine::combined(first, self)
+    }
+
+    /// Returns its own words as the only hypothesis, if there are any.
+    pub fn alone(&self) -> Vec<Hypothesis> {
+        let words = self.text.split_whitespace().map(|word| (word.to_owned(), CONFIDENCE));
+        let hypothesis = Hypothesis::of_words(words, 1.0);
+        if hypothesis.text.is_empty() { Vec::new() } else { vec![hypothesis] }
     }
 }
 
@@ -76,6 +89,7 @@ struct Job {
 /// The second recogniser, on a thread of its own.
 pub struct SecondOpinion {
     thread: WorkerThread<Job>,
+    decides: bool,
 }
 
 /// An utterance that the second recogniser is listening to. Dropping it makes it stop.
@@ -95,6 +109,14 @@ pub trait Network {
         candidates: &dyn Fn() -> Option<Vec<String>>,
         limit: &Limit,
     ) -> Option<Opinion>;
+
+    /// Returns when [`Self::idle`] is due.
+    fn idle_at(&self) -> Option<Instant> {
+        None
+    }
+
+    /// Does what is due while there is no utterance.
+    fn idle(&mut self) {}
 }
 
 /// Loads a model for the sentences of a scene.
@@ -147,21 +169,24 @@ impl SecondOpinion {
     /// Starts a thread that asks the network of `open`.
     pub fn with(open: impl FnOnce() -> Option<Box<dyn Network>> + Send + 'static) -> Self {
         let run = move |jobs: &Receiver<Job>| {
-            let Some(mut network) = open() else { return };
+            let Some(network) = open() else { return };
             // Without the permission it runs at normal priority.
             let _ = rustix::process::setpriority_process(Some(rustix::thread::gettid()), NICENESS);
-            // Work dropped meanwhile would only delay the next utterance.
-            for Job { samples, candidates, opinion, limit } in
-                jobs.iter().filter(|job| !job.limit.is_over())
-            {
-                let candidates = || candidates.recv_deadline(limit.until).ok();
-                if let Some(known) = network.opinion(&samples, &candidates, &limit) {
-                    // The receiver may have been dropped.
-                    let _ = opinion.send(known);
-                }
-            }
+            serve(network, jobs);
         };
-        Self { thread: WorkerThread::start(WAITING_MAX, run) }
+        Self { thread: WorkerThread::start(WAITING_MAX, run), decides: false }
+    }
+
+    /// Starts a thread that asks a recogniser which decides alone.
+    pub fn deciding(open: impl FnOnce() -> Box<dyn Network> + Send + 'static) -> Self {
+        let run = move |jobs: &Receiver<Job>| serve(open(), jobs);
+        Self { thread: WorkerThread::start(WAITING_MAX, run), decides: true }
+    }
+
+    /// Returns whether it decides alone, so that its words count in place of the first
+    /// recogniser's.
+    pub fn decides(&self) -> bool {
+        self.decides
     }
 
     /// Begins to listen to one utterance, 16 kHz mono, as it was recorded. `None`: no room.
@@ -173,6 +198,29 @@ impl SecondOpinion {
         let job = Job { samples, candidates: asked, opinion: known, limit: Arc::clone(&limit) };
         self.thread.offer(job).ok()?;
         Some(PendingOpinion { candidates, opinion, limit })
+    }
+}
+
+/// Asks the network about each utterance. Work dropped meanwhile is skipped: it would only delay
+/// the next one.
+fn serve(mut network: Box<dyn Network>, jobs: &Receiver<Job>) {
+    loop {
+        let next = match network.idle_at() {
+            None => jobs.recv().map_err(RecvTimeoutError::from),
+            Some(at) => jobs.recv_deadline(at),
+        };
+        match next {
+            Ok(Job { limit, .. }) if limit.is_over() => {}
+            Ok(Job { samples, candidates, opinion, limit }) => {
+                let candidates = || candidates.recv_deadline(limit.until).ok();
+                if let Some(known) = network.opinion(&samples, &candidates, &limit) {
+                    // The receiver may have been dropped.
+                    let _ = opinion.send(known);
+                }
+            }
+            Err(RecvTimeoutError::Timeout) => network.idle(),
+            Err(RecvTimeoutError::Disconnected) => return,
+        }
     }
 }
 

@@ -3,29 +3,29 @@
 //! Invariant: it delays nothing. It has a decoder of its own, runs at low priority, and omits sound
 //! that it cannot decode in time.
 
-use crossbeam_channel::{Receiver, Sender};
-use speech_engines::recogniser::{InterimDecoder, InterimDecoderOpener};
-use speech_engines::worker_thread::lower_priority;
+use crossbeam_channel::Receiver;
 
-use crate::In;
+use super::{InterimDecoder, InterimDecoderOpener};
+use crate::worker_thread::lower_priority;
 
 /// Blocks of samples that may wait: more than a second.
-pub(super) const BLOCKS_MAX: usize = 4;
+pub const BLOCKS_MAX: usize = 4;
 /// Scheduling priority relative to the threads that return results (nice).
 const NICENESS: i32 = 10;
 
-/// Decodes until there are no more blocks or no receiver of events.
-pub(super) fn run(
+/// Decodes blocks, each with the number of its sound, until there are no more or `publish`, which
+/// gets the words so far whenever they change, returns `false`.
+pub fn run(
     open: InterimDecoderOpener,
     blocks: &Receiver<(u64, Vec<i16>)>,
-    events: &Sender<In<'static>>,
+    mut publish: impl FnMut(u64, String) -> bool,
 ) {
     lower_priority(NICENESS);
     let Some(decoder) = open() else { return };
     let mut utterance = OngoingUtterance { decoder, sound: 0, text: String::new() };
     for (sound, samples) in blocks {
         if let Some(text) = utterance.decode(sound, &samples)
-            && events.send(In::InterimResult { sound, text }).is_err()
+            && !publish(sound, text)
         {
             return;
         }
@@ -62,8 +62,8 @@ impl OngoingUtterance {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::recogniser::RecogniseError;
     use crossbeam_channel::unbounded;
-    use speech_engines::recogniser::RecogniseError;
 
     /// Returns other words for each block, the same ones twice.
     struct Stub(usize);
@@ -82,15 +82,16 @@ mod tests {
 
     #[test]
     fn interim_results_are_published_on_change_for_the_latest_speaker() {
-        let ((give, blocks), (events, published)) = (unbounded(), unbounded());
+        let ((give, blocks), mut published) = (unbounded(), Vec::new());
         for sound in [5, 5, 5, 5, 7, 7, 5, 5] {
             give.send((sound, vec![0; 10])).unwrap();
         }
         drop(give);
-        run(Box::new(|| Some(Box::new(Stub(0)))), &blocks, &events);
-        drop(events);
-        let result = |sound, text: &str| In::InterimResult { sound, text: text.to_owned() };
-        let expected = [result(5, "the"), result(5, "the white"), result(7, "the")];
-        assert_eq!(published.iter().collect::<Vec<_>>(), expected);
+        run(Box::new(|| Some(Box::new(Stub(0)))), &blocks, |sound, text| {
+            published.push((sound, text));
+            true
+        });
+        let expected = [(5, "the"), (5, "the white"), (7, "the")];
+        assert_eq!(published, expected.map(|(sound, text)| (sound, text.to_owned())));
     }
 }

@@ -1,0 +1,92 @@
+//! State of a server in whose place something built in stands while it fails.
+
+use std::time::{Duration, Instant};
+
+use wyoming::{Address, ClientError};
+
+/// Interval of attempts to reach a server that is away.
+const RETRY_EVERY: Duration = Duration::from_secs(2);
+
+/// Whether a server works, as far as its last request shows.
+pub(crate) struct ServerState {
+    address: Address,
+    /// What stands in its place, e.g. `built-in recogniser`.
+    stand_in: &'static str,
+    /// Key of its time limit.
+    limit_key: &'static str,
+    retry_at: Option<Instant>,
+    note: Option<String>,
+}
+
+impl ServerState {
+    pub(crate) fn new(address: Address, stand_in: &'static str, limit_key: &'static str) -> Self {
+        Self { address, stand_in, limit_key, retry_at: None, note: None }
+    }
+
+    /// Returns when a server that is away is to be asked again.
+    pub(crate) fn retry_at(&self) -> Option<Instant> {
+        self.retry_at
+    }
+
+    /// Returns whether the server was away a moment ago: to ask it would only cost time.
+    pub(crate) fn is_away(&self) -> bool {
+        self.retry_at.is_some_and(|at| Instant::now() < at)
+    }
+
+    /// Returns what stands in the server's place and why, for the operator; `None` if it works.
+    pub(crate) fn note(&self) -> Option<&str> {
+        self.note.as_deref()
+    }
+
+    /// Takes the result of a request. Returns whether the note changes.
+    pub(crate) fn record<T>(&mut self, result: &Result<T, ClientError>) -> bool {
+        let (address, stand_in, key) = (&self.address, self.stand_in, self.limit_key);
+        let failing = |error: &ClientError, help: String| {
+            Some(format!("{stand_in} in place of {address}: {error}{help}"))
+        };
+        let note = match result {
+            // It shows nothing about the server.
+            Err(ClientError::Cancelled) => return false,
+            Ok(_) => None,
+            Err(error @ ClientError::Late(_)) => {
+                failing(error, format!("; help: raise speech.wyoming.{key}"))
+            }
+            Err(error) => failing(error, String::new()),
+        };
+        let is_away = matches!(result, Err(ClientError::Unreachable(_)));
+        self.retry_at = is_away.then(|| Instant::now() + RETRY_EVERY);
+        if note == self.note {
+            return false;
+        }
+        match &note {
+            Some(note) => tracing::warn!("{note}"),
+            None if self.note.is_some() => tracing::info!(%address, "the server works again"),
+            None => {}
+        }
+        self.note = note;
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn server_state_notes_each_change_once_and_waits_only_for_an_absent_server() {
+        let address = "tcp://127.0.0.1:10300".parse().unwrap();
+        let mut state = ServerState::new(address, "built-in recogniser", "answer_ms");
+        let away = Err::<(), _>(ClientError::Unreachable("refused".to_owned()));
+        let late = Err::<(), _>(ClientError::Late(Duration::from_millis(700)));
+        assert!(!state.record(&Ok(())) && state.note().is_none());
+        assert!(state.record(&away) && !state.record(&away) && state.is_away());
+        assert!(!state.record(&Err::<(), _>(ClientError::Cancelled)) && state.is_away());
+        assert!(state.record(&late) && !state.is_away());
+        assert_eq!(
+            state.note().unwrap(),
+            "built-in recogniser in place of tcp://127.0.0.1:10300: no answer within 700 ms; help: \
+             raise speech.wyoming.answer_ms"
+        );
+        assert!(state.record(&Ok(())) && state.note().is_none());
+    }
+}

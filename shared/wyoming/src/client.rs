@@ -1,0 +1,173 @@
+//! A blocking client. Each request has a connection of its own, as in Home Assistant, so that no
+//! answer can be that of another request.
+
+use std::time::Duration;
+
+use crate::connection::Connection;
+use crate::{Address, AudioFormat, Event, Info, Program};
+
+/// Error of a request.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ClientError {
+    /// The server accepts no connection.
+    #[error("no connection: {0}")]
+    Unreachable(String),
+    /// No answer within the limit.
+    #[error("no answer within {} ms", .0.as_millis())]
+    Late(Duration),
+    /// The connection ended before the answer.
+    #[error("it ended the connection before its answer")]
+    Ended,
+    /// The server reports a failure.
+    #[error("it reports: {0}")]
+    Refused(String),
+    /// The answer is invalid, or the connection failed.
+    #[error("{0}")]
+    Broken(String),
+    /// The caller does not need the answer any more.
+    #[error("cancelled")]
+    Cancelled,
+}
+
+/// Synthesised sound.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Sound {
+    /// Its format.
+    pub format: AudioFormat,
+    /// Its samples.
+    pub audio: Vec<u8>,
+}
+
+/// A voice of a server; without names its default.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Voice {
+    /// The server's name of it.
+    pub name: Option<String>,
+    /// A speaker of it.
+    pub speaker: Option<String>,
+}
+
+/// A client of one server.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Client {
+    /// The server.
+    pub address: Address,
+    /// Longest time until the server accepts a connection.
+    pub connect: Duration,
+    /// Longest time of a request from then on.
+    pub answer: Duration,
+}
+
+/// Samples of a chunk of audio: a tenth of a second at 16 kHz.
+const CHUNK: usize = 1_600;
+/// Most bytes of synthesised sound: two minutes at 48 kHz in 16 bits and two channels.
+const SOUND_MAX: usize = 120 * 48_000 * 4;
+
+impl Client {
+    fn open<'c>(&self, is_cancelled: &'c dyn Fn() -> bool) -> Result<Connection<'c>, ClientError> {
+        Connection::open(&self.address, (self.connect, self.answer), is_cancelled)
+    }
+
+    /// Returns the server's programs.
+    ///
+    /// # Errors
+    /// If the server is away, late or answers with something else.
+    pub fn describe(&self) -> Result<Info, ClientError> {
+        let mut connection = self.open(&|| false)?;
+        connection.send([&Event::Describe])?;
+        loop {
+            if let Event::Info(info) = connection.next()? {
+                return Ok(info);
+            }
+        }
+    }
+
+    /// Returns what the server is, in words, e.g. `piper 1.6.0 at tcp://127.0.0.1:10200`.
+    ///
+    /// # Errors
+    /// As for [`Self::describe`], with the address.
+    pub fn examine(&self) -> Result<String, String> {
+        let address = &self.address;
+        let info = self.describe().map_err(|error| format!("{address}: {error}"))?;
+        let name = |Program { name, version }: Program| {
+            [Some(name), version].into_iter().flatten().collect::<Vec<_>>().join(" ")
+        };
+        let programs: Vec<String> = info.asr.into_iter().chain(info.tts).map(name).collect();
+        Ok(format!("{} at {address}", programs.join(", ")))
+    }
+
+    /// Returns the words of an utterance, `samples` at `rate_hz`, one channel; empty if there are
+    /// none. `terms` are words to expect. `is_cancelled` is asked every few milliseconds.
+    ///
+    /// # Errors
+    /// If the server is away, late, reports a failure or answers with something else, or the
+    /// request was cancelled.
+    pub fn transcribe(
+        &self,
+        (samples, rate_hz): (&[i16], u32),
+        (language, terms): (&str, &[String]),
+        is_cancelled: &dyn Fn() -> bool,
+    ) -> Result<String, ClientError> {
+        let mut connection = self.open(is_cancelled)?;
+        let format = AudioFormat { rate_hz, width: 2, channels: 1 };
+        let (language, terms) = (Some(language.to_owned()), terms.to_vec());
+        connection.send([&Event::Transcribe { language, terms }, &Event::AudioStart(format)])?;
+        for chunk in samples.chunks(CHUNK) {
+            let audio = chunk.iter().flat_map(|sample| sample.to_le_bytes()).collect();
+            connection.send([&Event::AudioChunk(format, audio)])?;
+        }
+        connection.send([&Event::AudioStop])?;
+        loop {
+            if let Event::Transcript(text) = connection.next()? {
+                return Ok(text);
+            }
+        }
+    }
+
+    /// Returns the sound of a text. `is_cancelled` is asked every few milliseconds.
+    ///
+    /// # Errors
+    /// If the server is away, late, reports a failure or answers with something else or with too
+    /// much sound, or the request was cancelled.
+    pub fn synthesize(
+        &self,
+        text: &str,
+        Voice { name, speaker }: &Voice,
+        is_cancelled: &dyn Fn() -> bool,
+    ) -> Result<Sound, ClientError> {
+        let mut connection = self.open(is_cancelled)?;
+        let (text, voice, speaker) = (text.to_owned(), name.clone(), speaker.clone());
+        connection.send([&Event::Synthesize { text, voice, speaker }])?;
+        let mut sound: Option<Sound> = None;
+        loop {
+            match connection.next()? {
+                Event::AudioStart(format) if sound.is_none() => {
+                    sound = Some(Sound { format, audio: Vec::new() });
+                }
+                Event::AudioStart(_) => return broken("its sound begins twice"),
+                Event::AudioChunk(format, more) => {
+                    let sound = sound.get_or_insert(Sound { format, audio: Vec::new() });
+                    if sound.format != format {
+                        return broken("its sound changes its format");
+                    }
+                    if sound.audio.len() + more.len() > SOUND_MAX {
+                        return broken("its sound is longer than two minutes");
+                    }
+                    sound.audio.extend(more);
+                }
+                Event::AudioStop => {
+                    let sound = sound.filter(|sound| !sound.audio.is_empty());
+                    return sound.map_or_else(|| broken("its sound is empty"), Ok);
+                }
+                _ => {}
+            }
+        }
+    }
+}
+
+fn broken<T>(what: &str) -> Result<T, ClientError> {
+    Err(ClientError::Broken(what.to_owned()))
+}
+
+#[cfg(test)]
+mod tests;
