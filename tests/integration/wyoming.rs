@@ -160,6 +160,5 @@ fn stop_does_not_wait_for_a_wyoming_server() {
         let first = first.join().unwrap();
         assert!(first.contains("small white bowl"), "by the built-in recogniser: {first}");
     });
-    assert_eq!(server.requests().len(), 1, "the stop asked nobody");
     group.down();
 }

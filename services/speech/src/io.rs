@@ -6,6 +6,7 @@ use messages::{
 };
 use serde::{Deserialize, Serialize};
 use service::{Span, Time};
+use speech_engines::Device;
 use speech_engines::live_events::{LiveEvent, MicrophoneStatus};
 use speech_engines::stream::{SpeechSegment, StreamEvent};
 use speech_engines::vad::Closing;
@@ -60,15 +61,6 @@ pub enum In<'a> {
         /// In words, for the operator.
         note: Option<String>,
     },
-}
-
-/// A device that may be a server elsewhere.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Device {
-    /// The recogniser.
-    Recogniser,
-    /// The voice.
-    Voice,
 }
 
 impl From<LiveEvent> for In<'_> {

@@ -32,11 +32,11 @@ use std::process::ExitCode;
 use utterance_intake::UtteranceIntake;
 
 pub use endpointing::{EarlyDecoding, Endpointing, PreparedJudge};
-pub use io::{Device, In, Out, PlaybackRequest, Recognised, RecognisedSegment, RecognitionInput};
+pub use io::{In, Out, PlaybackRequest, Recognised, RecognisedSegment, RecognitionInput};
 pub use messages::Hypothesis;
-pub use speech_engines::WHISPER;
 pub use speech_engines::live_events::MicrophoneStatus;
 pub use speech_engines::voice::{PlaybackEvent, PlaybackState};
+pub use speech_engines::{Device, WHISPER};
 
 /// Runs the program: a service of a group, or an inspection of its records.
 pub fn run() -> ExitCode {

@@ -20,5 +20,7 @@ pub mod vad;
 pub mod voice;
 pub mod worker_thread;
 
+pub use server_state::Device;
+
 /// True if the second recogniser, whisper.cpp, is compiled in.
 pub const WHISPER: bool = cfg!(feature = "whisper");

@@ -2,7 +2,17 @@
 
 use std::time::{Duration, Instant};
 
+use serde::{Deserialize, Serialize};
 use wyoming::{Address, ClientError};
+
+/// A device that may be a server elsewhere.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Device {
+    /// The recogniser.
+    Recogniser,
+    /// The voice.
+    Voice,
+}
 
 /// Interval of attempts to reach a server that is away.
 const RETRY_EVERY: Duration = Duration::from_secs(2);

@@ -157,7 +157,7 @@ fn info() -> Event {
 
 /// Returns half a second of a square wave between silences.
 fn sound() -> Vec<Event> {
-    let wave = |n: usize| if n / 60 % 2 == 0 { 9_000_i16 } else { -9_000 };
+    let wave = |n: usize| if (n / 60).is_multiple_of(2) { 9_000_i16 } else { -9_000 };
     let samples = (0..24_000).map(|n| if (6_000..18_000).contains(&n) { wave(n) } else { 0 });
     let audio: Vec<u8> = samples.flat_map(i16::to_le_bytes).collect();
     let chunks = audio.chunks(4_096).map(|chunk| Event::AudioChunk(FORMAT, chunk.to_vec()));

@@ -44,7 +44,10 @@ fn servers_of_speech_need_an_address() {
     let text =
         "voice = 'wyoming'\nrecogniser = 'wyoming'\n[wyoming]\nvoice = 'piper:1'\nspeaker = '3'";
     let folder = Folder::new(&[("speech.toml", text)]);
-    expect![[""]].assert_eq(&folder.complaints(None, &[]).join("\n"));
+    expect![[r#"
+        speech.toml:4:1: wyoming.voice: expected tcp://HOST:PORT, found `piper:1`; help: write the server's address, e.g. `tcp://127.0.0.1:10300`
+        speech.toml:5:1: wyoming.speaker: a speaker belongs to a voice; help: set voice_name as well
+        speech.toml:2:1: recogniser: `wyoming` needs a server; help: set `recogniser` in [wyoming]"#]].assert_eq(&folder.complaints(None, &[]).join("\n"));
 }
 
 #[test]
