@@ -30,10 +30,11 @@ pub(crate) struct ServerState {
 
 impl ServerState {
     pub(crate) fn new(address: Address, stand_in: &'static str, limit_key: &'static str) -> Self {
-        Self { address, stand_in, limit_key, retry_at: None, note: None }
+        let retry_at = Some(Instant::now());
+        Self { address, stand_in, limit_key, retry_at, note: None }
     }
 
-    /// Returns when a server that is away is to be asked again.
+    /// Returns when to ask a server that was not asked yet, or is away.
     pub(crate) fn retry_at(&self) -> Option<Instant> {
         self.retry_at
     }

@@ -68,12 +68,12 @@ impl Client {
         Connection::open(&self.address, (self.connect, self.answer), is_cancelled)
     }
 
-    /// Returns the server's programs.
+    /// Returns the server's programs. `is_cancelled` is asked every few milliseconds.
     ///
     /// # Errors
-    /// If the server is away, late or answers with something else.
-    pub fn describe(&self) -> Result<Info, ClientError> {
-        let mut connection = self.open(&|| false)?;
+    /// If the server is away, late or answers with something else, or the request was cancelled.
+    pub fn describe(&self, is_cancelled: &dyn Fn() -> bool) -> Result<Info, ClientError> {
+        let mut connection = self.open(is_cancelled)?;
         connection.send([&Event::Describe])?;
         loop {
             if let Event::Info(info) = connection.next()? {
@@ -88,7 +88,7 @@ impl Client {
     /// As for [`Self::describe`], with the address.
     pub fn examine(&self) -> Result<String, String> {
         let address = &self.address;
-        let info = self.describe().map_err(|error| format!("{address}: {error}"))?;
+        let info = self.describe(&|| false).map_err(|error| format!("{address}: {error}"))?;
         let name = |Program { name, version }: Program| {
             [Some(name), version].into_iter().flatten().collect::<Vec<_>>().join(" ")
         };

@@ -66,9 +66,7 @@ pub(super) fn start(options: &WyomingOptions, scene: &Scene, report: Report) -> 
     let (client, terms) = (options.client.clone(), terms(scene));
     SecondOpinion::deciding(move || {
         let state = ServerState::new(client.address.clone(), "built-in recogniser", "answer_ms");
-        let mut server = Server { client, terms, state, report };
-        server.idle();
-        Box::new(server)
+        Box::new(Server { client, terms, state, report })
     })
 }
 
@@ -125,8 +123,8 @@ impl Network for Server {
         self.state.retry_at()
     }
 
-    fn idle(&mut self) {
-        let info = self.client.describe();
+    fn idle(&mut self, is_over: &dyn Fn() -> bool) {
+        let info = self.client.describe(is_over);
         self.record(&info);
     }
 }
@@ -214,6 +212,16 @@ mod tests {
         let _back = StandIn::start_at(port, Manner::Answer("yes".to_owned()));
         assert_eq!(reported.recv_timeout(PATIENCE), Ok(None), "without an utterance");
         assert_eq!(ask(&second).unwrap().text, "yes");
+    }
+
+    #[test]
+    fn wyoming_recogniser_ends_though_its_server_is_silent() {
+        let server = StandIn::start(Manner::Deaf);
+        let (second, _reported) = started(&server, PATIENCE);
+        let began = Instant::now();
+        std::thread::sleep(Duration::from_millis(100));
+        drop(second);
+        assert!(began.elapsed() < PATIENCE / 2, "{:?}", began.elapsed());
     }
 
     #[test]

@@ -31,7 +31,7 @@ fn client_transcribes_synthesises_and_describes() {
     assert_eq!(transcribe(&client).as_deref(), Ok("the white one"));
     let sound = synthesize(&client).unwrap();
     assert_eq!((sound.format, sound.audio.len()), (FORMAT, 48_000));
-    assert_eq!(client.describe().unwrap().asr[0].name, "stand-in");
+    assert_eq!(client.describe(&|| false).unwrap().asr[0].name, "stand-in");
     assert_eq!(client.examine().unwrap(), format!("stand-in 1, stand-in 1 at {}", server.address));
     let terms = vec!["white".to_owned()];
     let text = "Is it white?".to_owned();

@@ -90,6 +90,13 @@ struct Job {
 pub struct SecondOpinion {
     thread: WorkerThread<Job>,
     decides: bool,
+    closed: Arc<AtomicBool>,
+}
+
+impl Drop for SecondOpinion {
+    fn drop(&mut self) {
+        self.closed.store(true, Ordering::Relaxed);
+    }
 }
 
 /// An utterance that the second recogniser is listening to. Dropping it makes it stop.
@@ -115,8 +122,8 @@ pub trait Network {
         None
     }
 
-    /// Does what is due while there is no utterance.
-    fn idle(&mut self) {}
+    /// Does what is due while there is no utterance, until `is_over`.
+    fn idle(&mut self, _is_over: &dyn Fn() -> bool) {}
 }
 
 /// Loads a model for the sentences of a scene.
@@ -172,15 +179,18 @@ impl SecondOpinion {
             let Some(network) = open() else { return };
             // Without the permission it runs at normal priority.
             let _ = rustix::process::setpriority_process(Some(rustix::thread::gettid()), NICENESS);
-            serve(network, jobs);
+            serve(network, jobs, &AtomicBool::new(false));
         };
-        Self { thread: WorkerThread::start(WAITING_MAX, run), decides: false }
+        let thread = WorkerThread::start(WAITING_MAX, run);
+        Self { thread, decides: false, closed: Arc::default() }
     }
 
     /// Starts a thread that asks a recogniser which decides alone.
     pub fn deciding(open: impl FnOnce() -> Box<dyn Network> + Send + 'static) -> Self {
-        let run = move |jobs: &Receiver<Job>| serve(open(), jobs);
-        Self { thread: WorkerThread::start(WAITING_MAX, run), decides: true }
+        let closed: Arc<AtomicBool> = Arc::default();
+        let own = Arc::clone(&closed);
+        let run = move |jobs: &Receiver<Job>| serve(open(), jobs, &own);
+        Self { thread: WorkerThread::start(WAITING_MAX, run), decides: true, closed }
     }
 
     /// Returns whether it decides alone, so that its words count in place of the first
@@ -203,7 +213,8 @@ impl SecondOpinion {
 
 /// Asks the network about each utterance. Work dropped meanwhile is skipped: it would only delay
 /// the next one.
-fn serve(mut network: Box<dyn Network>, jobs: &Receiver<Job>) {
+fn serve(mut network: Box<dyn Network>, jobs: &Receiver<Job>, closed: &AtomicBool) {
+    let is_wanted = || closed.load(Ordering::Relaxed) || !jobs.is_empty();
     loop {
         let next = match network.idle_at() {
             None => jobs.recv().map_err(RecvTimeoutError::from),
@@ -218,7 +229,7 @@ fn serve(mut network: Box<dyn Network>, jobs: &Receiver<Job>) {
                     let _ = opinion.send(known);
                 }
             }
-            Err(RecvTimeoutError::Timeout) => network.idle(),
+            Err(RecvTimeoutError::Timeout) => network.idle(&is_wanted),
             Err(RecvTimeoutError::Disconnected) => return,
         }
     }
