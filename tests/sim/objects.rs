@@ -46,6 +46,7 @@ fn check_noisy(dialogues: u64) {
     let found = detect(number("WHICHONE_SEEDS").unwrap_or(dialogues), seed);
     let Tally { dialogues, right, questions, questions_certain, beside, worst_m, .. } = found;
     let [asked, certain] = [questions, questions_certain].map(|it| it as f64 / dialogues as f64);
+    #[allow(clippy::print_stderr, reason = "the figures of this measure")]
     eprintln!(
         "seed {seed}: {right} of {dialogues} right, {asked:.2} questions, of a certain scene {certain:.2}; \
          grasps at most {:.1} mm off",
