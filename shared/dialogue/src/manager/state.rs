@@ -105,10 +105,7 @@ pub struct Timing {
 pub const PROMPTS_MAX: usize = 64;
 
 /// How often a question is asked in an interaction, repetitions after silence not counted.
-const ASKED_MAX: u32 = 2;
-/// Times that a question is put again, after silence or words that say nothing, until it counts as
-/// asked once more.
-const PUT_AGAIN: u32 = 3;
+const ASKED_MAX: usize = 2;
 
 /// Appends an item and drops the oldest beyond the limit.
 pub(super) fn push_bounded<T>(items: &mut Vec<T>, item: T) {
@@ -201,8 +198,8 @@ impl Interaction {
     }
 
     /// Returns the questions that were asked as often as one is ([`ASKED_MAX`]); a choice counts
-    /// as a question about each of its values, and a question that is put again and again as
-    /// another one ([`PUT_AGAIN`]). A user who may take a value for another one says the same again.
+    /// as a question about each of its values. A user who may take a value for another one says the
+    /// same again.
     pub(super) fn spent(&self) -> Vec<Question> {
         if self.posterior.said().is_none() {
             return Vec::new();
@@ -214,14 +211,11 @@ impl Interaction {
             Question::None => Vec::new(),
             other => vec![other],
         };
-        let mut asked: Vec<(Question, u32)> = Vec::new();
-        for prompt in &self.prompts {
-            let more = 1 + prompt.times.saturating_sub(1) / PUT_AGAIN;
-            for question in each(prompt.question) {
-                match asked.iter_mut().find(|(known, _)| *known == question) {
-                    Some((_, times)) => *times += more,
-                    None => asked.push((question, more)),
-                }
+        let mut asked: Vec<(Question, usize)> = Vec::new();
+        for question in self.prompts.iter().flat_map(|prompt| each(prompt.question)) {
+            match asked.iter_mut().find(|(known, _)| *known == question) {
+                Some((_, times)) => *times += 1,
+                None => asked.push((question, 1)),
             }
         }
         asked.retain(|(_, times)| *times >= ASKED_MAX);

@@ -153,21 +153,6 @@ fn what_fits_nothing_is_offered_before_it_is_fetched() {
     }
 }
 
-/// Words that say nothing, for whatever is asked.
-#[test]
-fn question_that_brings_nothing_gives_way_to_others() {
-    let settings = Settings { choices: true, ..settings_of(BOWLS) };
-    let mut manager = settings.manager();
-    let mut state = first(&mut manager, Reading::default());
-    for _ in 0..8 {
-        assert_eq!(state.act.kind, ActKind::Ask);
-        state = reply(&mut manager, &state, Reading::default());
-    }
-    let prompts = &state.open.as_ref().unwrap().prompts;
-    let times: Vec<u32> = prompts.iter().map(|prompt| prompt.times).collect();
-    assert!(times.len() >= 2 && times.iter().all(|times| *times <= 4), "{times:?}");
-}
-
 #[test]
 fn the_user_is_told_what_there_is_not_and_what_there_is() {
     let settings = settings_of(TOOLS);
