@@ -44,18 +44,21 @@ impl Manager {
 
     /// Retracts words that the user replaces: by others of the same attribute ("a mug", and then
     /// "make it a cup"), or by a description that fits objects to none of which they apply ("the
-    /// white one in the cabinet", and then "the clear one") and are no answer to a question about
-    /// their own attribute. Only if both are certain.
+    /// white one in the cabinet", and then "the clear one") and that is no answer to a question about
+    /// what it says. Only if both are certain.
     pub(super) fn retract(&self, state: &mut State, heard: &Heard<'_>) {
         let Some((question, reading)) = likeliest(&heard.interpretations) else { return };
-        if state.open.is_none() || reading.base.is_empty() || reading.doubt != Doubt::default() {
+        let Some(open) = &state.open else { return };
+        if reading.base.is_empty() || reading.doubt != Doubt::default() {
             return;
         }
         let (scene, model) = (&self.setup.scene, &self.setup.model);
         let of = |word: WordId| model.meanings(word).iter().map(|(k, _)| *k);
         let said: Vec<AttributeId> = reading.base.iter().flat_map(|word| of(*word)).collect();
-        // An answer says no more than it was asked: what it contradicts is not taken back by it.
-        let is_answer = question.attribute().is_some_and(|asked| said.iter().all(|k| *k == asked));
+        // An answer says no more than it was asked: what it contradicts is not taken back by it, and
+        // the robot says that nothing fits both.
+        let is_answer = open.posterior.said().is_some()
+            && question.attribute().is_some_and(|asked| said.iter().all(|k| *k == asked));
         let objects = scene.ids();
         let fits = |i: &ObjectId| reading.base.iter().all(|word| model.has_word(*i, *word));
         let fitting: Vec<ObjectId> = objects.filter(fits).collect();

@@ -101,6 +101,7 @@ impl Manager {
             Some(open) => {
                 open.silences = 0;
                 open.evidence.clear();
+                open.prompts.clear();
                 open.forgotten = 0;
                 open.conceded = Conceded::default();
                 open.posterior = beginning;

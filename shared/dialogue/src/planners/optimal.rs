@@ -83,12 +83,14 @@ impl Planner for Optimal {
 
     fn decide(&mut self, problem: &DecisionProblem<'_>, belief: &Belief, _: Step) -> Decision {
         let (problem_key, key) = (problem.key(), belief.key());
-        if let Some(known) = self.table.get(problem_key, &key) {
+        // Concessions, perceptions, and what was asked often are of one interaction; the table is for
+        // recurring beliefs.
+        let recurs = problem.spent.is_empty();
+        if let Some(known) = self.table.get(problem_key, &key).filter(|_| recurs) {
             return known.clone();
         }
         let decision = self.solve(problem, &stands_for(belief, &key));
-        // Concessions and perceptions are of one interaction; the table is for recurring beliefs.
-        if problem.concessions.is_empty() && !problem.model.is_of_interaction() {
+        if recurs && problem.concessions.is_empty() && !problem.model.is_of_interaction() {
             self.table.insert(problem_key, &key, decision.clone());
         }
         decision

@@ -193,33 +193,41 @@ impl Reduced {
         let (mut splits, mut open) = (Cheapest::default(), Cheapest::default());
         let mut choices = Cheapest::default();
         let mut found = Vec::new();
+        // Of equal questions another one is left where the cheapest is not asked again.
+        let may = |query| problem.spent.is_empty() || !problem.is_spent(self.question(query));
         for (index, partition) in self.partitions.iter().enumerate() {
             let index = index as u16;
             let plainly = (0..partition.values.len()).map(|block| partition.yes_no.of(block).cost);
             let plain = problem.actions.attribute
                 && partition.is_yes_no()
                 && plainly.fold(f64::INFINITY, f64::min) <= partition.open.cost;
-            if problem.actions.which && partition.tells() && !plain {
+            let which = Query::Which { partition: index };
+            if problem.actions.which && partition.tells() && !plain && may(which) {
                 open.offer(partition.identity(), partition.open.cost, found.len());
-                found.push(Query::Which { partition: index });
+                found.push(which);
             }
             if problem.actions.attribute {
                 for (block, set) in partition.sets(&codes) {
+                    let query = Query::Is { partition: index, block };
+                    if !may(query) {
+                        continue;
+                    }
                     let split = match (partition.unknown, partition.doubt_code(block)) {
                         (None, 0) => split(set),
                         (unknown, doubt) => set ^ doubt ^ unknown.map_or(0, |u| u.yes.to_bits()),
                     };
                     splits.offer(split, partition.yes_no.of(usize::from(block)).cost, found.len());
-                    found.push(Query::Is { partition: index, block });
+                    found.push(query);
                 }
             }
             for (at, offer) in (0..).zip(&partition.offers) {
                 let plain = problem.actions.attribute && partition.is_plain(offer);
-                if offer.channel.capacity > 0.0 && !plain {
+                let query = Query::Choice { partition: index, offer: at };
+                if offer.channel.capacity > 0.0 && !plain && may(query) {
                     let code = partition.choice_code(offer, &codes);
                     let code = code.unwrap_or_else(|| vec![u64::from(index), at.into()]);
                     choices.offer(code, offer.channel.cost, found.len());
-                    found.push(Query::Choice { partition: index, offer: at });
+                    found.push(query);
                 }
             }
         }
@@ -227,8 +235,7 @@ impl Reduced {
         let kept = splits.places().chain(open.places()).chain(choices.places());
         let mut kept: Vec<usize> = kept.collect();
         kept.sort_unstable();
-        let kept = kept.into_iter().map(|place| found[place]);
-        self.queries = kept.filter(|query| !problem.is_spent(self.question(*query))).collect();
+        self.queries = kept.into_iter().map(|place| found[place]).collect();
     }
 
     /// Collects the classes to point at: each but those that a question distinguishes at no higher
@@ -246,7 +253,8 @@ impl Reduced {
             asked(code).is_some_and(|cost| cost <= self.point.of(class).cost)
         };
         let here = codes.iter().enumerate().filter(|(class, _)| Some(*class) != self.absent);
-        let pointed = here.filter(|(class, code)| !known(*class, **code));
+        let asked_enough = |class: usize| problem.is_spent(Question::Point(self.best[class]));
+        let pointed = here.filter(|(class, code)| !known(*class, **code) && !asked_enough(*class));
         self.pointed = pointed.map(|(class, _)| class as u32).collect();
     }
 }

@@ -1,6 +1,6 @@
 //! Users who take a value for another one, and say so each time.
 
-use super::fixture::{Settings, answer, first, reply, settings_of};
+use super::fixture::{Settings, answer, first, remark, reply, settings_of};
 use crate::manager::{Manager, State};
 use crate::{Model, rendering};
 use scene::{AttributeId, ObjectId, Question, Reading, Response, ValueId};
@@ -151,6 +151,31 @@ fn what_fits_nothing_is_offered_before_it_is_fetched() {
         }
         assert_eq!(wrong, 0, "what is offered can be declined");
     }
+}
+
+/// No clear bowl is in the cabinet: an answer leaves the place as it was said, and nothing fits; who describes
+/// another bowl unasked takes the place back.
+#[test]
+fn answer_takes_back_nothing_that_was_said_about_another_attribute() {
+    let settings = Settings { choices: true, ..settings_of(BOWLS) };
+    let mut manager = settings.manager();
+    let said = |word| {
+        let base = vec![settings.scene.word_named(word).expect("a word of the bowls")];
+        Reading { base, ..Reading::default() }
+    };
+    let asked = first(&mut manager, said("cabinet"));
+    let color = settings.scene.attribute_named("color");
+    assert_eq!(asked.act.question.attribute(), color, "{:?}", asked.act.question);
+    let answered = reply(&mut manager, &asked, said("clear"));
+    assert!(matches!(answered.act.question, Question::Point(_)), "{:?}", answered.act);
+    let line = rendering::text(&settings.scene, &answered.act);
+    assert!(line.starts_with("There "), "{line}");
+
+    let described = remark(&mut manager, &asked, said("clear"));
+    let belief = described.open.as_ref().expect("an interaction").belief();
+    let clear = |i: &ObjectId| manager.model().has_word(*i, said("clear").base[0]);
+    let share: f64 = settings.scene.ids().filter(clear).map(|i| belief.probability(i)).sum();
+    assert!(share > 0.9, "{share}");
 }
 
 #[test]
