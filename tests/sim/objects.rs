@@ -41,12 +41,12 @@ fn perceived_objects_that_the_camera_mistakes_bound_what_answers_achieve() {
 /// Questions of a dialogue under a noisy detector, on average.
 const QUESTIONS_MAX: f64 = 4.0;
 
+#[expect(clippy::print_stderr, reason = "the figures of this measure")]
 fn check_noisy(dialogues: u64) {
     let seed = number("WHICHONE_SEED").unwrap_or(1);
     let found = detect(number("WHICHONE_SEEDS").unwrap_or(dialogues), seed);
     let Tally { dialogues, right, questions, questions_certain, beside, worst_m, .. } = found;
     let [asked, certain] = [questions, questions_certain].map(|it| it as f64 / dialogues as f64);
-    #[allow(clippy::print_stderr, reason = "the figures of this measure")]
     eprintln!(
         "seed {seed}: {right} of {dialogues} right, {asked:.2} questions, of a certain scene {certain:.2}; \
          grasps at most {:.1} mm off",
