@@ -64,7 +64,8 @@ pub(crate) fn examine(
     let files = Files::find(dir, &tree, scene, &mut report);
     let mut examined = check(tree, report, files, None);
     if let Some(settings) = &mut examined.settings {
-        let (key, help) = (["console", "discovery"], "set console.listen = \"0.0.0.0:8377\"");
+        let (key, port) = (["console", "discovery"], settings.console.listen.port());
+        let help = format!("set console.listen = \"0.0.0.0:{port}\", or console.discovery = false");
         let warning = |what| settings.diagnostic(&key, what, help);
         warnings.extend(settings.console.unannounced().map(warning));
         settings.resolved.warnings = warnings;
@@ -75,8 +76,7 @@ pub(crate) fn examine(
 /// Durations as a snapshot holds them, and the snapshot.
 pub(crate) type Measured = (Option<Node>, Source);
 
-/// Checks the merged layers and the files that they name. `measured` are the durations of a
-/// snapshot; a configuration folder has none yet.
+/// Checks the merged layers and the files that they name. `measured` are the durations of a snapshot, if it is one.
 pub(crate) fn check(
     mut tree: Table,
     mut report: Report,

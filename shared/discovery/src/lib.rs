@@ -9,7 +9,7 @@ mod responder;
 
 use std::fmt;
 use std::io;
-use std::net::{IpAddr, SocketAddr};
+use std::net::SocketAddr;
 
 use mdns_sd::ServiceInfo;
 use serde::Serialize;
@@ -37,19 +37,23 @@ pub struct Identity {
 #[derive(Debug, thiserror::Error)]
 pub enum Unannounced {
     /// No other machine reaches the listener.
-    #[error("the console listens at {0}; help: set console.listen = \"0.0.0.0:8377\"")]
-    Loopback(IpAddr),
-    /// The responder has not started.
+    #[error(
+        "the console listens at {}; help: set console.listen = \"0.0.0.0:{}\", or console.discovery = false",
+        .0.ip(), .0.port()
+    )]
+    Loopback(SocketAddr),
+    /// The records are not those of a service.
     #[error(transparent)]
-    Responder(#[from] mdns_sd::Error),
-    /// Its thread has not started.
+    Records(#[from] mdns_sd::Error),
+    /// The responder's thread has not started.
     #[error(transparent)]
     Thread(#[from] io::Error),
 }
 
 /// A robot that is announced, until this is dropped.
 ///
-/// It follows the addresses of the machine. If another robot has the name, a number is appended.
+/// It follows the addresses of the machine. If another robot has the name, a number is appended. A responder that does
+/// not start, or fails, is started again.
 pub struct Announcement(Shared);
 
 impl fmt::Debug for Announcement {
@@ -63,10 +67,10 @@ impl Announcement {
     /// networks that reach it.
     ///
     /// # Errors
-    /// No other machine reaches the address, or a thread does not start.
+    /// No other machine reaches the address, the records are invalid, or a thread does not start.
     pub fn begin(robot: &Identity, listening: SocketAddr, path: &str) -> Result<Self, Unannounced> {
         let networks = records::networks(listening.ip());
-        let networks = networks.ok_or(Unannounced::Loopback(listening.ip()))?;
+        let networks = networks.ok_or(Unannounced::Loopback(listening))?;
         let service: ServiceInfo = records::service(robot, listening.port(), path, &networks)?;
         Ok(Self(Shared::start(Records { service, networks })?))
     }

@@ -1,5 +1,9 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+mod responder;
+
+use std::net::IpAddr;
+
 use mdns_sd::IfKind;
 
 use super::*;
@@ -47,9 +51,10 @@ fn networks_are_those_of_the_listener() {
     let of = |ip: &str| networks(ip.parse().unwrap());
     for loopback in ["127.0.0.1", "127.1.2.3", "::1", "::ffff:127.0.0.1"] {
         assert!(of(loopback).is_none(), "{loopback}");
-        let listening = SocketAddr::new(loopback.parse().unwrap(), 8377);
+        let listening = SocketAddr::new(loopback.parse().unwrap(), 80);
         let refused = Announcement::begin(&robot(), listening, "/api/v1").unwrap_err();
-        assert!(refused.to_string().contains("help: set console.listen"), "{refused}");
+        let help = "help: set console.listen = \"0.0.0.0:80\", or console.discovery = false";
+        assert!(refused.to_string().ends_with(help), "{refused}");
     }
     assert!(matches!(of("0.0.0.0").unwrap()[..], [IfKind::IPv4]));
     assert!(matches!(of("::").unwrap()[..], [IfKind::IPv4, IfKind::IPv6]));

@@ -44,6 +44,7 @@ class Fake:
         self.said: list[dict[str, Any]] = []
         self.keys: list[str] = []
         self.asked: list[str] = []
+        self.authorizations: list[str | None] = []
         self.bodies: dict[str, str] = {}
         self.resumed_after: list[str | None] = []
         self._replies: dict[str, str] = {}
@@ -119,6 +120,7 @@ class Fake:
     async def _other(self, request: web.Request) -> web.Response:
         path = request.match_info["path"]
         self.asked.append(path)
+        self.authorizations.append(request.headers.get("Authorization"))
         self.bodies[path] = await request.text()
         if path == "info" and self.info:
             return web.json_response(ANSWERS["info"]["body"] | self.info)

@@ -91,6 +91,8 @@ async def test_robot_that_is_found_is_set_up_with_its_token(core, fake):
     assert done["type"] is FlowResultType.CREATE_ENTRY
     assert done["data"] == {"url": fake.url, "token": TOKEN}
     assert done["result"].unique_id == ID
+    wrong, right = (f"Bearer {token}" for token in ("wrong", TOKEN))
+    assert fake.authorizations[:6] == [None, wrong, wrong, None, right, right]
     await core.async_block_till_done()
     assert (await find(core, announced(fake.port)))["reason"] == "already_configured"
     await core.config_entries.async_unload(done["result"].entry_id)
@@ -101,6 +103,14 @@ async def test_robot_that_is_found_is_set_up_with_its_token(core, fake):
     [
         ({"api": "2"}, "api_version"),
         ({"id": ""}, "invalid_announcement"),
+        ({"id": None}, "invalid_announcement"),
+        ({"id": "i" * 65}, "invalid_announcement"),
+        ({"id": "two words"}, "invalid_announcement"),
+        ({"name": None}, "invalid_announcement"),
+        ({"name": "kitchen\n"}, "invalid_announcement"),
+        ({"name": "n" * 33}, "invalid_announcement"),
+        ({"name": "-kitchen"}, "invalid_announcement"),
+        ({"name": "[click](http://evil)"}, "invalid_announcement"),
         ({"scheme": "ftp"}, "invalid_announcement"),
         ({"path": "elsewhere"}, "invalid_announcement"),
     ],
@@ -140,7 +150,33 @@ async def test_another_robot_at_the_announced_address_is_not_followed(core, fake
     flow = await find(core, announced(other.port))
     assert (await answer(core, flow))["reason"] == "other_robot"
     assert entry.data["url"] == fake.url
+    assert (other.asked, other.authorizations) == (["info"], [None])
     await other.end()
+
+
+async def test_robot_that_is_back_before_its_owner_agrees_is_not_followed(core, fake, entry):
+    impostor = Fake()
+    await impostor.start()
+    await fake.end()
+    flow = await find(core, announced(impostor.port))
+    assert flow["step_id"] == "moved"
+    await fake.start()
+    assert (await answer(core, flow))["reason"] == "already_configured"
+    assert (entry.data["url"], impostor.asked) == (fake.url, [])
+    await impostor.end()
+
+
+async def test_robot_behind_a_gateway_is_not_followed(core, fake, entry):
+    # A gateway names no robot to strangers.
+    fake.answers["info"] = "no_token"
+    assert (await find(core, announced(1)))["reason"] == "already_configured"
+
+
+async def test_another_robot_at_the_address_that_was_found_gets_no_token(core, fake):
+    flow = await find(core, announced(fake.port))
+    fake.info = {"id": "another"}
+    assert (await answer(core, flow, token=TOKEN))["reason"] == "other_robot"
+    assert (fake.asked, fake.authorizations) == (["info"], [None])
 
 
 async def test_robot_that_is_ignored_stays_ignored(core, fake):

@@ -79,9 +79,9 @@ class Robot:
     """One robot, by its address and a token."""
 
     def __init__(self, session: aiohttp.ClientSession, url: str, token: str) -> None:
-        """Ask at `url`, without `/api/v1`."""
+        """Ask at `url`, without `/api/v1`. With an empty token none is sent."""
         self._session, self.url = session, url.rstrip("/")
-        self._headers = {"Authorization": f"Bearer {token}"}
+        self._headers = {"Authorization": f"Bearer {token}"} if token else {}
 
     async def info(self) -> dict[str, Any]:
         """Which robot this is."""

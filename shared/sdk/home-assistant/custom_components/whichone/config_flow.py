@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -9,6 +10,7 @@ import voluptuous as vol
 from homeassistant.config_entries import ConfigEntry, ConfigFlow, ConfigFlowResult, OptionsFlow
 from homeassistant.const import CONF_TOKEN, CONF_URL
 from homeassistant.core import callback
+from homeassistant.data_entry_flow import AbortFlow
 from homeassistant.helpers.aiohttp_client import async_get_clientsession
 from homeassistant.helpers.selector import (
     BooleanSelector,
@@ -25,6 +27,8 @@ from .const import API, CONF_NAME_PEOPLE, DOMAIN
 _PLAIN = TextSelector(TextSelectorConfig(type=TextSelectorType.URL))
 _SECRET = TextSelector(TextSelectorConfig(type=TextSelectorType.PASSWORD))
 _TOKEN = {vol.Required(CONF_TOKEN): _SECRET}
+# What robots are called. Anyone in the network writes announcements, and their words are shown.
+_FORMS = {"name": re.compile(r"[a-z0-9][a-z0-9-]{0,31}"), "id": re.compile(r"[A-Za-z0-9_-]{1,64}")}
 
 
 class WhichoneFlow(ConfigFlow, domain=DOMAIN):
@@ -57,13 +61,13 @@ class WhichoneFlow(ConfigFlow, domain=DOMAIN):
     async def async_step_zeroconf(self, discovery_info: ZeroconfServiceInfo) -> ConfigFlowResult:
         """Take the address of a robot that announces itself."""
         found, url = discovery_info.properties, announced_url(discovery_info)
-        if not found.get("id") or url is None:
+        if url is None or not all(form.fullmatch(found.get(key) or "") for key, form in _FORMS.items()):
             return self.async_abort(reason="invalid_announcement")
         if found.get("api") != str(API):
             return self.async_abort(reason="api_version")
         self._url = url
         entry = await self.async_set_unique_id(found["id"])
-        self.context["title_placeholders"] = {"name": entry.title if entry else found.get("name") or "whichone"}
+        self.context["title_placeholders"] = {"name": entry.title if entry else found["name"]}
         if entry and await self._is_gone(entry):
             self._moved = entry
             return await self.async_step_moved()
@@ -74,9 +78,8 @@ class WhichoneFlow(ConfigFlow, domain=DOMAIN):
         """Set up a robot that was found, with its token."""
         errors: dict[str, str] = {}
         if user_input is not None:
-            data, info, errors = await self._try({CONF_URL: self._url, **user_input})
+            data, info, errors = await self._try({CONF_URL: self._url, **user_input}, self.unique_id)
             if not errors:
-                await self.async_set_unique_id(info["id"], raise_on_progress=False)
                 self._abort_if_unique_id_configured()
                 return self.async_create_entry(title=info["name"], data=data)
         return self._ask("zeroconf_confirm", _TOKEN, errors, url=self._url)
@@ -88,9 +91,10 @@ class WhichoneFlow(ConfigFlow, domain=DOMAIN):
         """
         entry, errors = self._moved, {}
         if user_input is not None:
-            data, info, errors = await self._try({**entry.data, CONF_URL: self._url})
-            if not errors and info["id"] != entry.unique_id:
-                return self.async_abort(reason="other_robot")
+            # The form may be old.
+            if not await self._is_gone(entry):
+                return self.async_abort(reason="already_configured")
+            data, _, errors = await self._try({**entry.data, CONF_URL: self._url}, entry.unique_id)
             if not errors:
                 return self.async_update_reload_and_abort(entry, data_updates=data, reason="reconfigure_successful")
         # A form without fields shows an error only as a whole.
@@ -141,20 +145,33 @@ class WhichoneFlow(ConfigFlow, domain=DOMAIN):
         if url == self._url:
             return False
         try:
-            # Identities are public: whoever has the address now does not get the token.
-            info = await Robot(async_get_clientsession(self.hass), url, "").info()
+            return await self._id_at(url) != entry.unique_id
+        except InvalidToken:
+            # A gateway, which names its robots to nobody without a secret.
+            return False
         except RobotError:
             return True
-        return info.get("id") != entry.unique_id
 
-    async def _try(self, given: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Any], dict[str, str]]:
-        """Return what is to be stored, which robot it is, and what is wrong with it."""
+    async def _id_at(self, url: str) -> str | None:
+        """Return the id of the robot at an address, which is public: what answers there does not get the token."""
+        info = await Robot(async_get_clientsession(self.hass), url, "").info()
+        return info.get("id")
+
+    async def _try(
+        self, given: Mapping[str, Any], found: str | None = None
+    ) -> tuple[dict[str, Any], dict[str, Any], dict[str, str]]:
+        """Return what is to be stored, which robot it is, and what is wrong with it.
+
+        Of a robot that announces itself, `found` is the id: a robot with another one does not get the token.
+        """
         url = robot_url(given[CONF_URL])
         if url is None:
             return {}, {}, {CONF_URL: "invalid_url"}
         data = {CONF_URL: url, CONF_TOKEN: given[CONF_TOKEN].strip()}
         robot = Robot(async_get_clientsession(self.hass), url, data[CONF_TOKEN])
         try:
+            if found and await self._id_at(url) != found:
+                raise AbortFlow("other_robot")
             info = await robot.info()
             if info.get("api") != API or not info.get("id"):
                 return data, info, {"base": "api_version"}
