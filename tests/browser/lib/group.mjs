@@ -83,7 +83,8 @@ export class Group {
     await releaseCounts();
     await until("the release", async () => {
       const ended = await this.call("resume-motion");
-      if (ended.code !== 0 && !ended.stderr.includes("less than 2 s before")) throw new Error(ended.stderr);
+      if (ended.code !== 0 && !ended.stderr.includes("less than 2 s before"))
+        throw new Error(ended.stderr);
       return ended.code === 0;
     });
   }
