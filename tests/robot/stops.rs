@@ -68,6 +68,20 @@ fn emergency_stop_latches_and_the_pick_resumes_after_release() {
     world.assert_delivered_once();
 }
 
+/// Who has seen the motion stop alone does not release what the button stops.
+#[test]
+fn emergency_stop_is_another_stop_than_the_one_in_force() {
+    let mut world = World::new(&[]);
+    world.run(0.5);
+    world.motion(MotionOrder::Stop);
+    world.run(0.3);
+    let seen = world.status().stop();
+    world.drill(DrillKind::PressEstop, 0.0);
+    world.run_until("the button's stop", |w| w.hindrance() == MotionInhibit::Stopped);
+    world.run(0.3);
+    assert!(world.status().stop() > seen, "{} after {seen}", world.status().stop());
+}
+
 fn assert_nothing_is_commanded_since(world: &World, since: Time) {
     let late = since + Span::from_ms(20);
     let commands = |order: &Order<'_>| matches!(order, Order::Joints(..) | Order::Gripper(..));

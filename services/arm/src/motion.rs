@@ -141,7 +141,7 @@ impl ArmNode {
         self.driver.hold_here();
         // Neither the next order nor a part that works again moves it on.
         if matches!(fault, Fault::Part { .. }) {
-            self.latch_stop(now, fx);
+            self.latch_new_stop(now, fx);
         }
         if self.state.open_pick().is_some() {
             self.end(PickOutcome::Blocked, now, fx);

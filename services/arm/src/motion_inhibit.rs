@@ -10,12 +10,16 @@ impl ArmNode {
     /// commanded.
     pub(crate) fn read_sensors(&mut self, now: Time, fx: &mut Fx) {
         self.driver.begin_pass(now, self.may_calibrate());
+        use MotionInhibit::{Disabled, Error, Stopped};
         let inhibit = self.driver.inhibit();
         if inhibit != self.inhibit {
             self.inhibit = inhibit;
             log(inhibit, self.driver.remedy_for_silence());
+            // Who saw the stop before has not seen this one.
+            if inhibit == Stopped {
+                self.latch_new_stop(now, fx);
+            }
         }
-        use MotionInhibit::{Disabled, Error, Stopped};
         if matches!(inhibit, Stopped | Error | Disabled) {
             self.stand_still(now, fx);
             // Nothing begins to move because somebody enables the robot.
@@ -38,9 +42,13 @@ impl ArmNode {
 
     /// Latches the motion stop as an order that is given now would.
     pub(crate) fn latch_stop(&mut self, now: Time, fx: &mut Fx) {
-        if self.state.stopped {
-            return;
+        if !self.state.stopped {
+            self.latch_new_stop(now, fx);
         }
+    }
+
+    /// As [`ArmNode::latch_stop`], also over an earlier stop, whose release then no longer counts.
+    pub(crate) fn latch_new_stop(&mut self, now: Time, fx: &mut Fx) {
         (self.state.stopped, self.state.obeyed) = (true, now);
         self.urgent = true;
         self.record(Cause::Motion(MotionOrder::Stop), now, fx);

@@ -179,7 +179,7 @@ impl ArmNode {
             return;
         }
         // Its giver has not seen the stop in force.
-        if stop > StopId(0) && stop != self.state.stop() {
+        if order == MotionOrder::Resume && stop > StopId(0) && stop != self.state.stop() {
             tracing::warn!("release of the motion stop ignored: meant for another stop");
             return;
         }

@@ -38,10 +38,12 @@ pub struct Seen {
 impl Seen {
     /// Returns the answer to a local client that asks for the state. Rest is unknown.
     fn state(&self, now: Time) -> StopState {
+        // The time of a stop from before the robot's start is unknown.
         let age = Time(self.at_ns).since(Time(self.in_force_ns));
+        let in_force_ns = if self.in_force_ns == 0 { 0 } else { (now - age).ns() };
         StopState {
             given_ns: 0,
-            in_force_ns: (now - age).ns(),
+            in_force_ns,
             stopped: self.stopped,
             at_rest: false,
             durable: false,

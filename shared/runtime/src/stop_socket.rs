@@ -206,7 +206,7 @@ pub enum StopError {
     /// A release of a stop that is no longer the latest.
     #[error(
         "another stop was given after the one that this releases, and holds; \
-         help: see why the arm was stopped again, then release that stop"
+         help: see why the arm was stopped again, then release that stop, or run: whichone resume-motion"
     )]
     OtherStop,
     /// A release that was given too soon after a stop.

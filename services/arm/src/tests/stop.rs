@@ -107,6 +107,10 @@ fn release_of_an_earlier_stop_leaves_the_later_one_in_force() {
         assert_eq!((answer.stop, answer.stopped), (machine.status().stop(), holds));
     }
     assert_eq!(machine.status().stop(), StopId(0));
+    // Only releases are of a stop.
+    machine.receive(StopOrder { stop: seen, ..StopOrder::new(MotionOrder::Stop, machine.now) });
+    machine.run(0.05);
+    assert!(machine.node.state().stopped);
 }
 
 #[test]

@@ -8,7 +8,7 @@ use std::time::Duration;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use service::client::random_key;
 use service::group::GroupPaths;
-use service::stop_socket::{Caller, StopListener, StopOrder};
+use service::stop_socket::{Caller, LOOK, StopListener, StopOrder};
 use service::worker_channel::{self, DeviceReceiver, DeviceSender};
 use service::{Span, clock};
 use zenoh::Session;
@@ -131,6 +131,10 @@ impl Worker {
     }
 
     fn on_order(&mut self, order: &StopOrder, caller: Caller) {
+        // Nothing is known to answer with.
+        if *order == LOOK && self.seen.is_none() {
+            return;
+        }
         let StopOrder { given_ns, .. } = *order;
         match self.orders.take(order, self.seen, random_key().0, clock::now()) {
             Ok(Some(state)) => self.listener.answer(&caller, &state),

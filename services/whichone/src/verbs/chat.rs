@@ -173,8 +173,9 @@ impl<'a, 'b> Chat<'a, 'b> {
             }
         }
         let stop = self.conversation.latest().arm.map_or(self.stop, |arm| arm.stop());
-        // A stop of one's own has its answer.
-        if stop > self.stop && self.guard.may_resume(clock::now()) {
+        // The first stop of one's own has its answer; a later one may be somebody else's.
+        let is_told = self.stop == StopId(0) && !self.guard.may_resume(clock::now());
+        if stop > self.stop && !is_told {
             note("the arm is stopped; to let it move, type resume");
         }
         self.stop = stop;

@@ -201,6 +201,12 @@ impl Conversation {
 pub(super) fn glance(paths: &GroupPaths) -> Option<Latest> {
     let mut conversation = Conversation::join(paths).ok()?;
     conversation.first_look().ok()?;
+    // Speech states what it hears by itself.
+    let (until, mut polling) = (Instant::now() + FIRST_PATIENCE, Polling::default());
+    while conversation.latest.hearing.is_none() && Instant::now() < until {
+        polling.pause();
+        conversation.look().ok()?;
+    }
     Some(conversation.latest)
 }
 

@@ -73,7 +73,8 @@ class Order:
                 return self.state["durable"] or is_late or now - self.rests_since >= DURABLE_GRACE_S
             if self.stop and self.state.get("stop", 0) not in (0, self.stop):
                 raise NotStopped("another stop was given after the one that this releases, and holds; "
-                                 "help: see why the arm was stopped again, then release that stop")
+                                 "help: see why the arm was stopped again, then release that stop, "
+                                 "or run: whichone resume-motion")
             if self.state["stopped"] != (self.order == "stop") and self.state["in_force_ns"] > self.state["given_ns"]:
                 raise NotStopped("overruled by a later order; help: see `whichone watch`")
             if self.order == "resume" and self.state["in_force_ns"] + RESUME_AFTER_S * 1e9 > self.state["given_ns"]:

@@ -66,6 +66,11 @@ impl Keyboard {
         if key.kind == KeyEventKind::Release {
             return None;
         }
+        // A stop that is given while its release is typed has not been seen: with none before, the
+        // release would name none and lift it.
+        if self.seen == StopId(0) && stop > StopId(0) && matches!(self.mode, Mode::Releasing(_)) {
+            self.mode = Mode::Watching;
+        }
         if !matches!(self.mode, Mode::Releasing(_)) {
             self.seen = stop;
         }
@@ -204,6 +209,13 @@ mod tests {
         assert_eq!(keyboard.press(key('\n'), StopId(8), at(2_000)), Some(RELEASE));
         assert_eq!(keyboard.press(key('r'), StopId(8), at(2_000)), None);
         assert_eq!(press(&mut keyboard, "resume\n", 2_000), [Command::Release(StopId(8))]);
+        // The same with none before: the release would be of any.
+        for c in "rresum".chars() {
+            assert_eq!(keyboard.press(key(c), StopId(0), at(2_000)), None);
+        }
+        for c in "e\n".chars() {
+            assert_eq!(keyboard.press(key(c), StopId(9), at(2_000)), None);
+        }
     }
 
     #[test]
