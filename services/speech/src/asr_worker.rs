@@ -81,7 +81,7 @@ impl AsrWorker {
             let (first, unpronounceable) = with_room(closed, || backend.open(&scene))?;
             let events = events.clone();
             let report = move |note| drop(events.send(In::Server { of: Device::Recogniser, note }));
-            let server = backend.server(&scene, Box::new(report));
+            let server = backend.server(&scene, &*first, Box::new(report));
             let second = server.or_else(|| model.map(|model| SecondOpinion::start(model, scene)));
             Ok(Opened { first, second, unpronounceable, gate })
         };

@@ -31,27 +31,38 @@ fn recogniser(settings: &Settings) -> Finding {
         Err(error) => return no_folder(WHAT, &error),
     };
     let backend = options::backend(&settings.speech, work.path());
-    if let Backend::Wyoming(options) = &backend
-        && let Err(reason) = options.client.examine()
-    {
-        return Finding::poor(WHAT, format!("{reason}; the built-in one takes its place"));
-    }
-    match backend.open(&settings.scene) {
-        Ok((_, unpronounceable)) if unpronounceable.is_empty() => Finding::good(
-            WHAT,
-            match &backend {
-                Backend::PocketSphinx(options) => {
-                    format!("pocketsphinx with {}", options.model.display())
-                }
-                Backend::Command(options) => options.command.join(" "),
-                Backend::Wyoming(options) => options.client.address.to_string(),
-            },
-        ),
-        Ok((_, words)) => {
-            let words = words.join(", ");
-            Finding::poor(WHAT, format!("words of the scene that cannot be recognised: {words}"))
+    let (first, words) = match backend.open(&settings.scene) {
+        Ok(opened) => opened,
+        Err(error) => {
+            return Finding::poor(WHAT, format!("{error}; without it only typed text works"));
         }
-        Err(error) => Finding::poor(WHAT, format!("{error}; without it only typed text works")),
+    };
+    if !words.is_empty() {
+        let words = words.join(", ");
+        return Finding::poor(
+            WHAT,
+            format!("words of the scene that cannot be recognised: {words}"),
+        );
+    }
+    match &backend {
+        Backend::PocketSphinx(options) => {
+            Finding::good(WHAT, format!("pocketsphinx with {}", options.model.display()))
+        }
+        Backend::Command(options) => Finding::good(WHAT, options.command.join(" ")),
+        Backend::Wyoming(options) => server(WHAT, options.examine(), first.is_missing()),
+    }
+}
+
+/// Returns the finding about a server. `is_alone`: no built-in recogniser listens beside it.
+fn server(what: &str, examined: Result<String, String>, is_alone: bool) -> Finding {
+    const ALONE: &str = "nothing stops the arm by voice without the server; help: install the \
+                         packages libpocketsphinx3 and pocketsphinx-en-us";
+    match (examined, is_alone) {
+        (Ok(programs), false) => Finding::good(what, programs),
+        (Ok(found) | Err(found), true) => Finding::poor(what, format!("{found}; {ALONE}")),
+        (Err(reason), false) => {
+            Finding::poor(what, format!("{reason}; the built-in one takes its place"))
+        }
     }
 }
 

@@ -11,6 +11,11 @@ use std::os::linux::net::SocketAddrExt;
 use std::os::unix::ffi::OsStrExt;
 use std::os::unix::net::{SocketAddr, UnixDatagram};
 
+use rustix::io::Errno;
+
+/// Longest state that is sent once, characters; the rest is cut off. The supervisor keeps less.
+const STATE_CHARS_MAX: usize = 512;
+
 /// The sender.
 #[derive(Debug, Default)]
 pub struct Notifier {
@@ -41,7 +46,7 @@ impl Notifier {
 
     /// Sends a state that is reported once, e.g. `READY=1`; it is kept until delivered.
     pub fn say(&mut self, state: &str) {
-        self.owed += state;
+        self.owed.extend(state.chars().take(STATE_CHARS_MAX));
         self.owed.push('\n');
         self.send("");
     }
@@ -56,6 +61,8 @@ impl Notifier {
         let text = format!("{}{more}", self.owed);
         match socket.send_to_addr(text.trim_end().as_bytes(), address) {
             Ok(_) => self.owed.clear(),
+            // It would never fit, nor would any with it.
+            Err(error) if Errno::from_io_error(&error) == Some(Errno::MSGSIZE) => self.owed.clear(),
             Err(error) => tracing::debug!(%error, "notification not delivered"),
         }
     }
@@ -98,6 +105,12 @@ mod tests {
         notifier.beat("WATCHDOG=1");
         assert_eq!(receive(&receiver).as_deref(), Some("READY=1\nWATCHDOG=1"));
         notifier.beat("WATCHDOG=1");
+        assert_eq!(receive(&receiver).as_deref(), Some("WATCHDOG=1"));
+        // A status of a mebibyte is cut, and what no datagram holds is dropped.
+        notifier.say(&format!("STATUS={}", "ü".repeat(1 << 19)));
+        assert_eq!(receive(&receiver).unwrap().chars().count(), STATE_CHARS_MAX);
+        notifier.owed = "x".repeat(1 << 23);
+        (0..2).for_each(|_| notifier.beat("WATCHDOG=1"));
         assert_eq!(receive(&receiver).as_deref(), Some("WATCHDOG=1"));
     }
 

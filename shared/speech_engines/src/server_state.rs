@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
-use wyoming::{Address, ClientError};
+use wyoming::{Address, Client, ClientError, Kind};
 
 /// A device that may be a server elsewhere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -14,8 +14,18 @@ pub enum Device {
     Voice,
 }
 
+/// Returns what a server is, for the operator.
+///
+/// # Errors
+/// If it is away or of another kind; with its address.
+pub(crate) fn examine(client: &Client, kind: Kind) -> Result<String, String> {
+    client.examine(kind, &|| false).map_err(|error| format!("{}: {error}", client.address))
+}
+
 /// Interval of attempts to reach a server that is away.
 const RETRY_EVERY: Duration = Duration::from_secs(2);
+/// Characters of an error that are shown: a server may send any number.
+const ERROR_MAX: usize = 70;
 
 /// Whether a server works, as far as its last request shows.
 pub(crate) struct ServerState {
@@ -24,6 +34,8 @@ pub(crate) struct ServerState {
     stand_in: &'static str,
     /// Key of its time limit.
     limit_key: &'static str,
+    /// Time for which a server that was late counts as away, if it does.
+    late_for: Option<Duration>,
     retry_at: Option<Instant>,
     note: Option<String>,
 }
@@ -31,7 +43,12 @@ pub(crate) struct ServerState {
 impl ServerState {
     pub(crate) fn new(address: Address, stand_in: &'static str, limit_key: &'static str) -> Self {
         let retry_at = Some(Instant::now());
-        Self { address, stand_in, limit_key, retry_at, note: None }
+        Self { address, stand_in, limit_key, late_for: None, retry_at, note: None }
+    }
+
+    /// Has a server that was late count as away for this time.
+    pub(crate) fn away_if_late(self, late_for: Duration) -> Self {
+        Self { late_for: Some(late_for), ..self }
     }
 
     /// Returns when to ask a server that was not asked yet, or is away.
@@ -53,6 +70,7 @@ impl ServerState {
     pub(crate) fn record<T>(&mut self, result: &Result<T, ClientError>) -> bool {
         let (address, stand_in, key) = (&self.address, self.stand_in, self.limit_key);
         let failing = |error: &ClientError, help: String| {
+            let error: String = error.to_string().chars().take(ERROR_MAX).collect();
             Some(format!("{stand_in} in place of {address}: {error}{help}"))
         };
         let note = match result {
@@ -64,8 +82,12 @@ impl ServerState {
             }
             Err(error) => failing(error, String::new()),
         };
-        let is_away = matches!(result, Err(ClientError::Unreachable(_)));
-        self.retry_at = is_away.then(|| Instant::now() + RETRY_EVERY);
+        let away_for = match result {
+            Err(ClientError::Unreachable(_)) => Some(RETRY_EVERY),
+            Err(ClientError::Late(_)) => self.late_for,
+            _ => None,
+        };
+        self.retry_at = away_for.map(|time| Instant::now() + time);
         if note == self.note {
             return false;
         }
@@ -85,8 +107,10 @@ mod tests {
 
     #[test]
     fn server_state_notes_each_change_once_and_waits_only_for_an_absent_server() {
-        let address = "tcp://127.0.0.1:10300".parse().unwrap();
-        let mut state = ServerState::new(address, "built-in recogniser", "answer_ms");
+        let address: Address = "tcp://127.0.0.1:10300".parse().unwrap();
+        let state = || ServerState::new(address.clone(), "built-in recogniser", "answer_ms");
+        let mut voice = state().away_if_late(Duration::from_secs(30));
+        let mut state = state();
         let away = Err::<(), _>(ClientError::Unreachable("refused".to_owned()));
         let late = Err::<(), _>(ClientError::Late(Duration::from_millis(700)));
         assert!(!state.record(&Ok(())) && state.note().is_none());
@@ -99,5 +123,9 @@ mod tests {
              raise speech.wyoming.answer_ms"
         );
         assert!(state.record(&Ok(())) && state.note().is_none());
+        assert!(voice.record(&late) && voice.is_away(), "each line would wait as long");
+        let long = Err::<(), _>(ClientError::Broken("ü".repeat(1 << 20)));
+        assert!(state.record(&long));
+        assert_eq!(state.note().unwrap().matches('ü').count(), ERROR_MAX);
     }
 }

@@ -3,7 +3,7 @@
 
 use std::time::Duration;
 
-use crate::connection::Connection;
+use crate::connection::{Connection, Lookup};
 use crate::{Address, AudioFormat, Event, Info, Program};
 
 /// Error of a request.
@@ -47,6 +47,15 @@ pub struct Voice {
     pub speaker: Option<String>,
 }
 
+/// A kind of program that a server offers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Recognisers.
+    Recogniser,
+    /// Voices.
+    Voice,
+}
+
 /// A client of one server.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Client {
@@ -56,16 +65,25 @@ pub struct Client {
     pub connect: Duration,
     /// Longest time of a request from then on.
     pub answer: Duration,
+    lookup: Lookup,
 }
 
 /// Samples of a chunk of audio: a tenth of a second at 16 kHz.
 const CHUNK: usize = 1_600;
 /// Most bytes of synthesised sound: two minutes at 48 kHz in 16 bits and two channels.
 const SOUND_MAX: usize = 120 * 48_000 * 4;
+/// Characters of the names of a server's programs that are shown.
+const NAMES_MAX: usize = 200;
 
 impl Client {
+    /// Returns a client with its time limits; see the fields.
+    pub fn new(address: Address, connect: Duration, answer: Duration) -> Self {
+        Self { address, connect, answer, lookup: Lookup::default() }
+    }
+
     fn open<'c>(&self, is_cancelled: &'c dyn Fn() -> bool) -> Result<Connection<'c>, ClientError> {
-        Connection::open(&self.address, (self.connect, self.answer), is_cancelled)
+        let (server, limits) = ((&self.address, &self.lookup), (self.connect, self.answer));
+        Connection::open(server, limits, is_cancelled)
     }
 
     /// Returns the server's programs. `is_cancelled` is asked every few milliseconds.
@@ -82,18 +100,30 @@ impl Client {
         }
     }
 
-    /// Returns what the server is, in words, e.g. `piper 1.6.0 at tcp://127.0.0.1:10200`.
+    /// Returns the server's programs of a kind in words, e.g. `piper 1.6.0 at
+    /// tcp://127.0.0.1:10200`.
     ///
     /// # Errors
-    /// As for [`Self::describe`], with the address.
-    pub fn examine(&self) -> Result<String, String> {
-        let address = &self.address;
-        let info = self.describe(&|| false).map_err(|error| format!("{address}: {error}"))?;
+    /// As for [`Self::describe`], or if the server has no program of this kind.
+    pub fn examine(
+        &self,
+        kind: Kind,
+        is_cancelled: &dyn Fn() -> bool,
+    ) -> Result<String, ClientError> {
+        let info = self.describe(is_cancelled)?;
+        let (programs, what) = match kind {
+            Kind::Recogniser => (info.asr, "it offers no recogniser"),
+            Kind::Voice => (info.tts, "it offers no voice"),
+        };
+        if programs.is_empty() {
+            return broken(what);
+        }
         let name = |Program { name, version }: Program| {
             [Some(name), version].into_iter().flatten().collect::<Vec<_>>().join(" ")
         };
-        let programs: Vec<String> = info.asr.into_iter().chain(info.tts).map(name).collect();
-        Ok(format!("{} at {address}", programs.join(", ")))
+        let names = programs.into_iter().map(name).collect::<Vec<_>>().join(", ");
+        let names: String = names.chars().take(NAMES_MAX).collect();
+        Ok(format!("{names} at {}", self.address))
     }
 
     /// Returns the words of an utterance, `samples` at `rate_hz`, one channel; empty if there are

@@ -2,7 +2,8 @@
 
 use std::io::{self, BufReader, BufWriter, ErrorKind, Read, Write};
 use std::net::{IpAddr, SocketAddr, TcpStream, ToSocketAddrs as _};
-use std::sync::mpsc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, mpsc};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -64,18 +65,20 @@ pub(crate) struct Connection<'c> {
 impl<'c> Connection<'c> {
     /// Connects within `connect`; everything else takes at most `limit` from then on.
     pub(crate) fn open(
-        address: &Address,
+        (address, lookup): (&Address, &Lookup),
         (connect, limit): (Duration, Duration),
         is_cancelled: &'c dyn Fn() -> bool,
     ) -> Result<Self, ClientError> {
         let until = Instant::now() + connect;
         let mut last = ClientError::Unreachable("its name has no address".to_owned());
-        for found in resolve(address, until)? {
-            let Some(left) = until.checked_duration_since(Instant::now()).filter(|t| !t.is_zero())
-            else {
+        let found = resolve(address, lookup, until)?;
+        for (found, remaining) in found.iter().zip((1..=found.len() as u32).rev()) {
+            // One that does not answer leaves time for the others.
+            let left = until.saturating_duration_since(Instant::now()) / remaining;
+            if left.is_zero() {
                 break;
-            };
-            match TcpStream::connect_timeout(&found, left) {
+            }
+            match TcpStream::connect_timeout(found, left) {
                 Ok(stream) => return Self::over(&stream, limit, is_cancelled),
                 Err(error) => last = ClientError::Unreachable(error.kind().to_string()),
             }
@@ -147,22 +150,79 @@ fn is_end(error: &io::Error) -> bool {
     matches!(error.kind(), BrokenPipe | ConnectionAborted | ConnectionReset | UnexpectedEof)
 }
 
+/// A client's look-ups of its server's name, at most one at a time.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Lookup(Arc<AtomicBool>);
+
+/// They make no difference between clients.
+impl PartialEq for Lookup {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+/// A look-up in flight.
+struct InFlight(Lookup);
+
+impl Lookup {
+    fn begin(&self) -> Option<InFlight> {
+        (!self.0.swap(true, Ordering::SeqCst)).then(|| InFlight(self.clone()))
+    }
+}
+
+impl Drop for InFlight {
+    fn drop(&mut self) {
+        self.0.0.store(false, Ordering::SeqCst);
+    }
+}
+
 /// Returns the addresses of a host. A name is looked up on a thread of its own, because the system
 /// may take its time, which nothing can shorten.
-fn resolve(address: &Address, until: Instant) -> Result<Vec<SocketAddr>, ClientError> {
+fn resolve(
+    address: &Address,
+    lookup: &Lookup,
+    until: Instant,
+) -> Result<Vec<SocketAddr>, ClientError> {
     let Address { host, port } = address.clone();
     if let Ok(number) = host.parse::<IpAddr>() {
         return Ok(vec![(number, port).into()]);
     }
+    let Some(in_flight) = lookup.begin() else {
+        return Err(ClientError::Unreachable("its name is still being looked up".to_owned()));
+    };
     let (found, wait) = mpsc::channel();
-    thread::spawn(move || {
+    let look_up = move || {
         let addresses = (host.as_str(), port).to_socket_addrs().map(Iterator::collect);
+        drop(in_flight);
         // The caller may have given up.
         let _ = found.send(addresses);
-    });
+    };
+    let started = thread::Builder::new().spawn(look_up);
+    started.map_err(|error| ClientError::Unreachable(error.to_string()))?;
     match wait.recv_timeout(until.saturating_duration_since(Instant::now())) {
         Ok(Ok(addresses)) => Ok(addresses),
         Ok(Err(error)) => Err(ClientError::Unreachable(error.to_string())),
         Err(_) => Err(ClientError::Unreachable("its name cannot be looked up in time".to_owned())),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn name_is_looked_up_once_at_a_time() {
+        let until = Instant::now() + Duration::from_secs(20);
+        let local = Address { host: "localhost".to_owned(), port: 1 };
+        let number = Address { host: "127.0.0.1".to_owned(), port: 1 };
+        let lookup = Lookup::default();
+        let in_flight = lookup.begin();
+        let refused = resolve(&local, &lookup, until).unwrap_err().to_string();
+        assert!(refused.contains("still being looked up"), "{refused}");
+        assert!(resolve(&number, &lookup, until).is_ok());
+        drop(in_flight);
+        for _ in 0..2 {
+            assert!(resolve(&local, &lookup, until).is_ok());
+        }
     }
 }

@@ -16,7 +16,7 @@ mod settings;
 pub mod stand_in;
 
 pub use address::{Address, AddressError};
-pub use client::{Client, ClientError, Sound, Voice};
+pub use client::{Client, ClientError, Kind, Sound, Voice};
 pub use event::{AudioFormat, Event, EventError, Info, Program};
 pub use frame::{Frame, FrameError, HEADER_MAX, PART_MAX};
 pub use settings::{Settings, read_settings};

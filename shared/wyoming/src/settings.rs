@@ -30,14 +30,14 @@ impl Settings {
     /// Returns a client of the recogniser's server, if there is one.
     pub fn recogniser_client(&self) -> Option<Client> {
         let address = self.recogniser.clone()?;
-        Some(Client { address, connect: self.connect, answer: self.answer })
+        Some(Client::new(address, self.connect, self.answer))
     }
 
     /// Returns a client of the voice's server with its voice, if there is one.
     pub fn voice_client(&self) -> Option<(Client, Voice)> {
         let address = self.voice.clone()?;
         let voice = Voice { name: self.voice_name.clone(), speaker: self.speaker.clone() };
-        Some((Client { address, connect: self.connect, answer: self.synthesis }, voice))
+        Some((Client::new(address, self.connect, self.synthesis), voice))
     }
 }
 
@@ -48,7 +48,7 @@ pub fn read_settings(f: &mut Fields<'_>) -> Settings {
         voice: address(f, "voice"),
         voice_name: f.optional_text("voice_name"),
         speaker: f.optional_text("speaker"),
-        connect: Duration::from_millis(f.whole("connect_ms", 10..=5_000)),
+        connect: Duration::from_millis(f.whole("connect_ms", 10..=2_000)),
         answer: Duration::from_millis(f.whole("answer_ms", 50..=20_000)),
         synthesis: Duration::from_millis(f.whole("synthesis_ms", 50..=20_000)),
     };

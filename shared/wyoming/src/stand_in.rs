@@ -17,6 +17,8 @@ pub enum Manner {
     Slow(String, Duration),
     /// Reports a failure.
     Error(String),
+    /// Offers these programs, and answers nothing else.
+    Offers(Info),
     /// Answers with these bytes, and stays connected.
     Bytes(Vec<u8>),
     /// Answers with these bytes, and ends the connection.
@@ -97,7 +99,10 @@ impl StandIn {
         let (mut words, mut bytes) = (Vec::new(), 0);
         loop {
             match Event::try_from(Frame::read(&mut reader).ok()??).ok()? {
-                Event::Describe => send(stream, &[info()])?,
+                Event::Describe => match &manner {
+                    Manner::Offers(info) => send(stream, &[Event::Info(info.clone())])?,
+                    _ => send(stream, &[info()])?,
+                },
                 Event::Transcribe { terms, .. } => words = terms,
                 Event::AudioChunk(_, audio) => bytes += audio.len(),
                 Event::AudioStop => {
@@ -142,7 +147,7 @@ fn reply(
             stream.write_all(b" ").ok()?;
             thread::sleep(Duration::from_millis(5));
         },
-        Manner::Deaf => None,
+        Manner::Deaf | Manner::Offers(_) => None,
     }
 }
 

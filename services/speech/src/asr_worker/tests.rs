@@ -42,8 +42,15 @@ impl Recogniser for Stub {
 fn worker(
     open: impl FnOnce() -> Result<Opened, String> + Send + 'static,
 ) -> (AsrWorker, Receiver<In<'static>>) {
+    worker_within(PATIENCE, open)
+}
+
+fn worker_within(
+    patience: Duration,
+    open: impl FnOnce() -> Result<Opened, String> + Send + 'static,
+) -> (AsrWorker, Receiver<In<'static>>) {
     let segmenter = SegmenterOptions::default();
-    let limits = Limits { segmenter, longest_s: 10.0, patience: Duration::from_millis(600) };
+    let limits = Limits { segmenter, longest_s: 10.0, patience };
     let (worker, events) = AsrWorker::with(move |_, _| open(), limits);
     assert_eq!(next(&events), In::RecogniserState(EarState::Loading));
     (worker, events)

@@ -234,7 +234,8 @@ impl Worker {
         Ok(segments)
     }
 
-    /// Decodes one utterance of a file. The second recogniser is not awaited while someone speaks.
+    /// Decodes one utterance of a file. The second recogniser is not awaited while someone speaks,
+    /// nor while an utterance waits for it.
     fn recognise_range(
         &mut self,
         samples: &[i16],
@@ -242,9 +243,13 @@ impl Worker {
         speech: &Range<usize>,
         channels: &Channels<'_>,
     ) -> Result<RecognisedSegment, String> {
+        let is_awaited = self.doubt.is_some();
         let recognisers = available(&mut self.recognisers)?;
         let (pcm, voice) = (&samples[range.clone()], voice_of(range, speech));
         let heard = recognisers.recognise(pcm, voice, |opinion, until| {
+            if is_awaited {
+                return false;
+            }
             let mut select = Select::new();
             let answered = select.recv(opinion);
             select.recv(channels.live);

@@ -73,7 +73,7 @@ impl Ensemble {
             None => Heard { first, second: SecondView::Late },
             // Lengths of the first one's words say nothing about other words.
             Some(opinion) if self.second_decides() => {
-                let first = FirstView { hypotheses: opinion.alone(), words_s: None, ..first };
+                let first = FirstView { hypotheses: decided(&opinion), words_s: None, ..first };
                 Heard { first, second: SecondView::NotAsked }
             }
             Some(opinion) => Heard { first, second: SecondView::Heard(opinion) },
@@ -140,6 +140,16 @@ impl Ensemble {
     }
 }
 
+/// Returns the hypotheses of a recogniser that decides alone. Of too many words only a stop counts.
+fn decided(opinion: &Opinion) -> Vec<Hypothesis> {
+    if opinion.is_too_long() && !language::is_stop(&opinion.text) {
+        let words = opinion.text.split_whitespace().count();
+        tracing::warn!(words, "words of the server are too many for an utterance");
+        return Vec::new();
+    }
+    opinion.alone()
+}
+
 /// Returns whether a voice says the words of the samples, in which `speech` are those of the voice.
 pub fn is_voice(first: &FirstView, pcm: &[i16], speech: &Range<usize>) -> bool {
     let voice = first.voice.unwrap_or_else(|| VoiceEvidence::in_speech(pcm, speech));
@@ -150,6 +160,17 @@ pub fn is_voice(first: &FirstView, pcm: &[i16], speech: &Range<usize>) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn words_of_a_server_that_are_too_many_count_only_if_they_stop_the_arm() {
+        let decided = |text: String| {
+            decided(&Opinion { text, ln_own: 0.0, ln_likelihood: Vec::new(), no_speech: 0.0 })
+        };
+        assert_eq!(decided("white ".repeat(32))[0].word_confidence.len(), 32);
+        assert!(decided("white ".repeat(33)).is_empty());
+        assert!(decided("x".repeat(2_001)).is_empty());
+        assert_eq!(decided("stop ".repeat(33)).len(), 1);
+    }
 
     #[test]
     fn voice_says_words_that_are_most_of_its_sound() {

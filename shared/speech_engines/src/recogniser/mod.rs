@@ -79,6 +79,11 @@ pub trait Recogniser: Send {
     /// If the backend fails on these samples.
     fn recognise(&mut self, pcm: &[i16], speech: Range<usize>) -> Recognition;
 
+    /// Returns whether it stands for one that is not installed, and so recognises nothing.
+    fn is_missing(&self) -> bool {
+        false
+    }
+
     /// Returns whether decoding is cheap enough to begin before the utterance's end is certain.
     fn is_quick(&self) -> bool {
         false
@@ -156,11 +161,16 @@ impl Backend {
         })
     }
 
-    /// Starts the server's client, if there is one: it decides in place of the recogniser of
-    /// [`Self::open`]. `report` is called on a thread of its own.
-    pub fn server(&self, scene: &Scene, report: Report) -> Option<SecondOpinion> {
+    /// Starts the server's client, if there is one: it decides in place of `first`, the recogniser
+    /// of [`Self::open`]. `report` is called on a thread of its own.
+    pub fn server(
+        &self,
+        scene: &Scene,
+        first: &dyn Recogniser,
+        report: Report,
+    ) -> Option<SecondOpinion> {
         match self {
-            Self::Wyoming(options) => Some(server::start(options, scene, report)),
+            Self::Wyoming(options) => Some(server::start(options, scene, first, report)),
             Self::PocketSphinx(_) | Self::Command(_) => None,
         }
     }

@@ -9,16 +9,16 @@ use std::ops::Range;
 use std::time::Instant;
 
 use scene::Scene;
-use wyoming::Client;
+use wyoming::{Client, Kind};
 
-use super::second_opinion::{Limit, Network};
+use super::second_opinion::{Limit, Network, TEXT_MAX};
 use super::{
     FirstView, Opinion, PocketSphinx, PocketSphinxOptions, Recogniser, RecogniserUnavailable,
     Recognition, SecondOpinion,
 };
 use crate::audio::RATE_HZ;
-use crate::language_model;
 use crate::server_state::ServerState;
+use crate::{language_model, server_state};
 
 /// The server, and the recogniser in its place.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,6 +29,16 @@ pub struct WyomingOptions {
     pub built_in: PocketSphinxOptions,
 }
 
+impl WyomingOptions {
+    /// Returns what the server is.
+    ///
+    /// # Errors
+    /// If it is away or no recogniser; with its address.
+    pub fn examine(&self) -> Result<String, String> {
+        server_state::examine(&self.client, Kind::Recogniser)
+    }
+}
+
 /// Gets what stands in the server's place and why, whenever that changes; `None`: it works.
 pub type Report = Box<dyn Fn(Option<String>) + Send>;
 
@@ -36,8 +46,6 @@ pub type Report = Box<dyn Fn(Option<String>) + Send>;
 const LANGUAGE: &str = "en";
 /// Words of the scene that are handed to the server: prompts of recognisers are short.
 const TERMS_MAX: usize = 100;
-/// Characters of a transcript that count: a minute of fast speech.
-const TEXT_MAX: usize = 2_000;
 
 /// Returns the recogniser beside the server: without a built-in one it has never heard a word.
 pub(super) fn beside(
@@ -59,13 +67,23 @@ impl Recogniser for NoWords {
     fn recognise(&mut self, _: &[i16], _: Range<usize>) -> Recognition {
         Ok(FirstView::default())
     }
+
+    fn is_missing(&self) -> bool {
+        true
+    }
 }
 
 /// Starts the client, which first asks what the server is: some load their models then.
-pub(super) fn start(options: &WyomingOptions, scene: &Scene, report: Report) -> SecondOpinion {
+pub(super) fn start(
+    options: &WyomingOptions,
+    scene: &Scene,
+    first: &dyn Recogniser,
+    report: Report,
+) -> SecondOpinion {
     let (client, terms) = (options.client.clone(), terms(scene));
+    let stand_in = if first.is_missing() { "nothing" } else { "built-in recogniser" };
     SecondOpinion::deciding(move || {
-        let state = ServerState::new(client.address.clone(), "built-in recogniser", "answer_ms");
+        let state = ServerState::new(client.address.clone(), stand_in, "answer_ms");
         Box::new(Server { client, terms, state, report })
     })
 }
@@ -114,8 +132,9 @@ impl Network for Server {
         let audio = (samples, RATE_HZ);
         let text = self.client.transcribe(audio, (LANGUAGE, &self.terms), &is_over);
         self.record(&text);
-        let text: String = text.ok()?.chars().take(TEXT_MAX).collect();
-        let text = language_model::words(&text).join(" ");
+        // One character more than counts shows that the words are cut.
+        let text =
+            language_model::words(&text.ok()?).join(" ").chars().take(TEXT_MAX + 1).collect();
         Some(Opinion { text, ln_own: 0.0, ln_likelihood: Vec::new(), no_speech: 0.0 })
     }
 
@@ -124,8 +143,8 @@ impl Network for Server {
     }
 
     fn idle(&mut self, is_over: &dyn Fn() -> bool) {
-        let info = self.client.describe(is_over);
-        self.record(&info);
+        let examined = self.client.examine(Kind::Recogniser, is_over);
+        self.record(&examined);
     }
 }
 
@@ -134,6 +153,7 @@ mod tests {
     use std::time::Duration;
 
     use crossbeam_channel::{Receiver, unbounded};
+    use wyoming::Info;
     use wyoming::stand_in::{Manner, Request, StandIn};
 
     use super::*;
@@ -142,12 +162,29 @@ mod tests {
     const PATIENCE: Duration = Duration::from_secs(20);
     const ANSWER: Duration = Duration::from_millis(300);
 
+    /// The recogniser beside the server.
+    struct Deaf;
+
+    impl Recogniser for Deaf {
+        fn recognise(&mut self, _: &[i16], _: Range<usize>) -> Recognition {
+            Ok(FirstView::default())
+        }
+    }
+
     fn started(server: &StandIn, answer: Duration) -> (SecondOpinion, Receiver<Option<String>>) {
-        let client = Client { address: server.address.clone(), connect: PATIENCE, answer };
+        started_beside(&Deaf, server, answer)
+    }
+
+    fn started_beside(
+        first: &dyn Recogniser,
+        server: &StandIn,
+        answer: Duration,
+    ) -> (SecondOpinion, Receiver<Option<String>>) {
+        let client = Client::new(server.address.clone(), PATIENCE, answer);
         let built_in = PocketSphinxOptions::debian("/nonexistent");
         let (report, reported) = unbounded();
         let report = Box::new(move |note| report.send(note).unwrap());
-        (start(&WyomingOptions { client, built_in }, &bowls(), report), reported)
+        (start(&WyomingOptions { client, built_in }, &bowls(), first, report), reported)
     }
 
     fn ask(second: &SecondOpinion) -> Option<Opinion> {
@@ -171,7 +208,8 @@ mod tests {
         server.behave(Manner::Answer("... ".to_owned()));
         assert!(ask(&second).unwrap().alone().is_empty());
         server.behave(Manner::Answer("x".repeat(1 << 19)));
-        assert_eq!(ask(&second).unwrap().text.len(), TEXT_MAX);
+        let long = ask(&second).unwrap();
+        assert!(long.is_too_long() && long.text.len() == TEXT_MAX + 1);
         assert!(reported.is_empty(), "it works");
     }
 
@@ -180,13 +218,12 @@ mod tests {
     #[test]
     fn wyoming_recogniser_reports_each_failure_and_recovers() {
         let server = StandIn::start(Manner::Error("no model".to_owned()));
-        let (second, reported) = started(&server, ANSWER);
+        let (second, reported) = started(&server, PATIENCE);
         let note = || reported.recv_timeout(PATIENCE).unwrap().unwrap();
         for (manner, expected) in [
             (Manner::Error("no model".to_owned()), "it reports: no model"),
             (Manner::Bytes(b"garbage\n".to_vec()), "not JSON"),
             (Manner::Cut(b"{\"type\": \"trans".to_vec()), "ended the connection"),
-            (Manner::Slow("late".to_owned(), PATIENCE), "no answer within 300 ms; help: raise"),
         ] {
             server.behave(manner);
             assert_eq!(ask(&second), None, "{expected}");
@@ -195,8 +232,31 @@ mod tests {
             assert!(note.starts_with("built-in recogniser in place of tcp://127"), "{note}");
         }
         server.behave(Manner::Answer("yes".to_owned()));
-        assert_eq!(ask(&second).unwrap().text, "yes", "and not the late answer");
+        assert_eq!(ask(&second).unwrap().text, "yes");
         assert_eq!(reported.recv_timeout(PATIENCE), Ok(None));
+    }
+
+    #[test]
+    fn wyoming_recogniser_never_takes_a_late_answer() {
+        let server = StandIn::start(Manner::Slow("late".to_owned(), 2 * ANSWER));
+        let (second, reported) = started(&server, ANSWER);
+        assert_eq!(ask(&second), None);
+        let note = reported.recv_timeout(PATIENCE).unwrap().unwrap();
+        assert!(note.contains("no answer within 300 ms; help: raise"), "{note}");
+        server.behave(Manner::Answer("yes".to_owned()));
+        // A busy machine may be late a few times.
+        let heard = (0..50).find_map(|_| ask(&second)).unwrap();
+        assert_eq!(heard.text, "yes");
+        assert_eq!(reported.recv_timeout(PATIENCE), Ok(None));
+    }
+
+    #[test]
+    fn wyoming_recogniser_says_what_is_missing() {
+        let server = StandIn::start(Manner::Offers(Info::default()));
+        let (_second, reported) = started_beside(&NoWords, &server, PATIENCE);
+        let note = reported.recv_timeout(PATIENCE).unwrap().unwrap();
+        let expected = format!("nothing in place of {}: it offers no recogniser", server.address);
+        assert_eq!(note, expected);
     }
 
     #[test]
@@ -227,8 +287,9 @@ mod tests {
     #[test]
     fn recogniser_beside_the_server_may_be_missing_but_waits_for_the_disk() {
         let missing = RecogniserUnavailable::Missing("no library".to_owned());
-        let heard = beside(Err(missing)).unwrap().recognise(&[7; 100], 0..100).unwrap();
-        assert!(heard.hypotheses.is_empty());
+        let mut alone = beside(Err(missing)).unwrap();
+        assert!(alone.recognise(&[7; 100], 0..100).unwrap().hypotheses.is_empty());
+        assert!(alone.is_missing() && !Deaf.is_missing());
         let short = RecogniserUnavailable::Short("full".to_owned());
         assert!(matches!(beside(Err(short)), Err(RecogniserUnavailable::Short(_))));
     }

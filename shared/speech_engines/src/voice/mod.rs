@@ -17,15 +17,17 @@ mod synthesis;
 mod trim;
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, SendError, Sender, TryRecvError, unbounded};
 use messages::SoundFile;
 use serde::{Deserialize, Serialize};
+use wyoming::Kind;
 
 use crate::child_process::End;
+use crate::server_state;
 use crate::worker_thread::{QueueError, WorkerThread};
 pub use options::{VoiceMode, VoiceOptions};
 pub use player::Player;
@@ -88,6 +90,8 @@ pub const WAITING_MAX: usize = 8;
 pub struct Voice {
     /// Prompts of an earlier generation are cancelled.
     generation: Arc<AtomicU64>,
+    /// Ends what is synthesised without a prompt.
+    closed: Arc<AtomicBool>,
     thread: WorkerThread<Prompt>,
 }
 
@@ -105,21 +109,33 @@ impl Voice {
         let (events, happened) = unbounded();
         let generation = Arc::new(AtomicU64::new(0));
         let current = Arc::clone(&generation);
+        let closed: Arc<AtomicBool> = Arc::default();
+        let own_closed = Arc::clone(&closed);
         let thread = WorkerThread::start(WAITING_MAX, move |prompts| {
             let mut synthesiser = Synthesiser::new(&options);
-            let output = choose(&options, &mut synthesiser);
+            let output = choose(&options, &mut synthesiser, &own_closed);
             let (mode, cache) = (options.mode, options.audio_dir.as_deref().and_then(cache));
             // Without a receiver of its events the voice has no more to do.
             if events.send(VoiceEvent::Output(output.clone())).is_ok() {
-                let (generation, mut foreseen) = (current, options.foreseen);
+                let (generation, closed, mut foreseen) = (current, own_closed, options.foreseen);
                 foreseen.truncate(FORESEEN_MAX);
                 foreseen.reverse();
                 let noted = None;
-                Speaker { mode, output, synthesiser, cache, events, generation, foreseen, noted }
-                    .run(prompts);
+                Speaker {
+                    mode,
+                    output,
+                    synthesiser,
+                    cache,
+                    events,
+                    generation,
+                    closed,
+                    foreseen,
+                    noted,
+                }
+                .run(prompts);
             }
         });
-        (Self { generation, thread }, happened)
+        (Self { generation, closed, thread }, happened)
     }
 
     /// Starts the voice without a prompt. Returns what speaks, and through which player.
@@ -128,7 +144,9 @@ impl Voice {
     /// Why prompts are shown as text, or why another voice takes the server's place.
     pub fn try_out(options: VoiceOptions) -> Result<String, String> {
         let own = options.program.name();
-        let server = options.server.as_ref().map(|server| server.client.examine());
+        let examine = |server: &ServerOptions| server_state::examine(&server.client, Kind::Voice);
+        let server = options.server.as_ref().map(examine);
+        let built_in = VoiceOptions { server: None, ..options.clone() };
         let (_voice, events) = Self::start(options);
         let player = match events.recv() {
             Ok(VoiceEvent::Output(VoiceOutput::Aloud(player))) => player.program,
@@ -140,7 +158,10 @@ impl Voice {
         match server {
             None => Ok(format!("{own} through {player}")),
             Some(Ok(server)) => Ok(format!("{server} through {player}")),
-            Some(Err(reason)) => Err(format!("{reason}; {own} takes its place")),
+            Some(Err(reason)) => Err(match Synthesiser::new(&built_in).try_out(|| false) {
+                Ok(()) => format!("{reason}; {own} takes its place"),
+                Err(error) => format!("{reason}; nothing takes its place: {error}"),
+            }),
         }
     }
 
@@ -161,15 +182,28 @@ impl Voice {
 
 impl Drop for Voice {
     fn drop(&mut self) {
+        self.closed.store(true, Ordering::SeqCst);
         self.interrupt();
     }
 }
 
-fn choose(options: &VoiceOptions, synthesiser: &mut Synthesiser) -> VoiceOutput {
+fn choose(
+    options: &VoiceOptions,
+    synthesiser: &mut Synthesiser,
+    closed: &AtomicBool,
+) -> VoiceOutput {
     if options.mode == VoiceMode::Print {
         return VoiceOutput::Text { reason: "speech.voice is \"print\"".to_owned() };
     }
-    let player = match synthesiser.try_out().and_then(|()| synthesiser.silence()) {
+    let tried = match synthesiser.try_out(|| closed.load(Ordering::SeqCst)) {
+        // The server may work with a later prompt.
+        Err(SynthesisError::Failed(reason)) if options.server.is_some() => {
+            tracing::warn!(reason, "nothing speaks in place of the server");
+            Ok(())
+        }
+        tried => tried,
+    };
+    let player = match tried.and_then(|()| synthesiser.silence()) {
         Ok(file) => Player::find(&options.players, &file),
         Err(error) => Err(error.to_string()),
     };
@@ -197,6 +231,7 @@ struct Speaker {
     cache: Option<PromptAudioCache>,
     events: Sender<VoiceEvent>,
     generation: Arc<AtomicU64>,
+    closed: Arc<AtomicBool>,
     /// Prompts to synthesise in advance, the most likely last.
     foreseen: Vec<String>,
     /// The published note about the server.
@@ -226,9 +261,12 @@ impl Speaker {
     /// a prompt waits for one at most.
     fn next(&mut self, prompts: &Receiver<Prompt>) -> Option<Prompt> {
         loop {
+            // Asked first: the last prompt was queued before.
+            let is_closed = self.closed.load(Ordering::SeqCst);
             match prompts.try_recv() {
                 Ok(prompt) => return Some(prompt),
                 Err(TryRecvError::Disconnected) => return None,
+                Err(TryRecvError::Empty) if is_closed => return None,
                 Err(TryRecvError::Empty) => {}
             }
             self.publish_note();
@@ -237,11 +275,12 @@ impl Speaker {
             let Some(text) = is_ahead.then(|| self.foreseen.pop()).flatten() else {
                 return prompts.recv().ok();
             };
-            let is_cancelled = || !prompts.is_empty();
+            let closed = &self.closed;
+            let is_cancelled = || closed.load(Ordering::SeqCst) || !prompts.is_empty();
             match self.synthesiser.speak(&text, is_cancelled) {
-                Ok(_) if self.synthesiser.note().is_some() => self.foreseen.push(text),
-                Ok(_) => {}
                 Err(SynthesisError::Cancelled) => self.foreseen.push(text),
+                _ if self.synthesiser.note().is_some() => self.foreseen.push(text),
+                Ok(_) => {}
                 // A failing prompt reports its error when it is spoken.
                 Err(error) => {
                     tracing::debug!(%error, "prompts are not synthesised in advance");

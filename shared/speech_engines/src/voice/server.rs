@@ -1,6 +1,7 @@
 //! A voice behind the Wyoming protocol, such as Piper.
 
 use std::path::Path;
+use std::time::Duration;
 
 use hound::{SampleFormat, WavSpec, WavWriter};
 use wyoming::{Client, ClientError, Sound, Voice};
@@ -18,6 +19,9 @@ pub struct ServerOptions {
     pub voice: Voice,
 }
 
+/// Time without requests to a server that was late: every line would wait as long.
+const LATE_FOR: Duration = Duration::from_secs(30);
+
 /// The server, with its state.
 pub(super) struct Server {
     options: ServerOptions,
@@ -28,11 +32,12 @@ impl Server {
     pub(super) fn new(options: ServerOptions) -> Self {
         let address = options.client.address.clone();
         let state = ServerState::new(address, "built-in voice", "synthesis_ms");
+        let state = state.away_if_late(LATE_FOR);
         Self { options, state }
     }
 
-    /// Synthesises a text into a WAV file. Returns `false` if the server fails, or was away a moment
-    /// ago.
+    /// Synthesises a text into a WAV file. Returns `false` if the server fails, or was away or late
+    /// a moment ago.
     ///
     /// # Errors
     /// If the file cannot be written, or the text is not needed any more.
@@ -94,8 +99,6 @@ fn write(file: &Path, Sound { format, audio }: &Sound) -> Result<(), SynthesisEr
 
 #[cfg(test)]
 mod tests {
-    use std::time::Duration;
-
     use wyoming::stand_in::{FORMAT, Manner, Request, StandIn};
 
     use super::*;
@@ -105,9 +108,8 @@ mod tests {
     const PATIENCE: Duration = Duration::from_secs(20);
 
     /// Returns a synthesiser with a server, in whose place `cp` writes half as long a sound.
-    fn synthesiser(server: &StandIn, folder: &Path) -> Synthesiser {
-        let client =
-            Client { address: server.address.clone(), connect: PATIENCE, answer: PATIENCE };
+    fn synthesiser(server: &StandIn, folder: &Path, answer: Duration) -> Synthesiser {
+        let client = Client::new(server.address.clone(), PATIENCE, answer);
         let short = folder.join("short.wav");
         let tone: Vec<i16> = (0..4_000).map(|n| if n % 40 < 20 { 9_000 } else { -9_000 }).collect();
         crate::audio::write_wav(&short, &tone).unwrap();
@@ -123,7 +125,7 @@ mod tests {
     fn server_speaks_each_prompt_once_and_is_stood_in_for_while_it_fails() {
         let folder = tempfile::tempdir().unwrap();
         let server = StandIn::start(Manner::Error("no voice".to_owned()));
-        let mut synthesiser = synthesiser(&server, folder.path());
+        let mut synthesiser = synthesiser(&server, folder.path(), PATIENCE);
         let length = |synthesiser: &mut Synthesiser, text| synthesiser.samples(text).unwrap().len();
         assert_eq!(length(&mut synthesiser, "one"), 4_000, "by the program");
         assert!(synthesiser.note().unwrap().ends_with("it reports: no voice"));
@@ -144,6 +146,19 @@ mod tests {
         assert_eq!(length(&mut synthesiser, "one"), of_server);
         assert_eq!(server.requests().len(), asked, "cached");
         assert_eq!(server.requests()[0], Request::Synthesize("one".to_owned()));
+    }
+
+    #[test]
+    fn server_that_was_late_is_left_alone_for_a_while() {
+        let folder = tempfile::tempdir().unwrap();
+        let server = StandIn::start(Manner::Deaf);
+        let mut synthesiser = synthesiser(&server, folder.path(), Duration::from_millis(50));
+        for text in ["one", "two"] {
+            assert_eq!(synthesiser.samples(text).unwrap().len(), 4_000, "by the program");
+            assert!(synthesiser.note().unwrap().contains("raise speech.wyoming.synthesis_ms"));
+            server.behave(Manner::Answer(String::new()));
+        }
+        assert!(!server.requests().contains(&Request::Synthesize("two".to_owned())));
     }
 
     #[test]

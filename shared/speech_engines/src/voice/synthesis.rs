@@ -144,8 +144,11 @@ impl Synthesiser {
     }
 
     /// Synthesises a short text to check the program.
-    pub(super) fn try_out(&mut self) -> Result<(), SynthesisError> {
-        self.speak("hello", || false).map(|_| ())
+    pub(super) fn try_out(
+        &mut self,
+        is_cancelled: impl Fn() -> bool,
+    ) -> Result<(), SynthesisError> {
+        self.speak("hello", is_cancelled).map(|_| ())
     }
 
     /// Writes a WAV file with a twentieth of a second of silence.

@@ -4,6 +4,9 @@ use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
 
+use wyoming::stand_in::{Manner, StandIn};
+use wyoming::{Client, Info};
+
 use super::PlaybackState::{Ended, Interrupted, Started};
 use super::*;
 use crate::audio::write_wav;
@@ -82,9 +85,14 @@ struct Events(Receiver<VoiceEvent>);
 
 impl Events {
     fn next(&self) -> (u64, PlaybackState) {
-        match self.0.recv_timeout(PATIENCE) {
-            Ok(VoiceEvent::Playback(PlaybackEvent { playback, state })) => (playback, state),
-            other => panic!("expected a playback event, found {other:?}"),
+        loop {
+            match self.0.recv_timeout(PATIENCE) {
+                Ok(VoiceEvent::Playback(PlaybackEvent { playback, state })) => {
+                    return (playback, state);
+                }
+                Ok(VoiceEvent::Server(_)) => {}
+                other => panic!("expected a playback event, found {other:?}"),
+            }
         }
     }
 
@@ -229,4 +237,47 @@ fn voice_cancels_synthesis_and_silent_playback() {
     voice.speak(1, FILE, "Is it white?").unwrap();
     voice.interrupt();
     assert_eq!(events.next(), (1, Interrupted));
+}
+
+fn by_server(server: &StandIn) -> Option<ServerOptions> {
+    let client = Client::new(server.address.clone(), PATIENCE, PATIENCE);
+    Some(ServerOptions { client, voice: wyoming::Voice::default() })
+}
+
+#[test]
+fn voice_ends_though_its_server_is_silent() {
+    let mut stage = Stage::new(VoiceMode::Auto, "exit 0");
+    let server = StandIn::start(Manner::Deaf);
+    stage.options.server = by_server(&server);
+    let began = Instant::now();
+    let (voice, _events) = Voice::start(stage.options.clone());
+    thread::sleep(Duration::from_millis(100));
+    drop(voice);
+    assert!(began.elapsed() < PATIENCE / 2, "on trial: {:?}", began.elapsed());
+    // It falls silent while it synthesises in advance.
+    server.behave(Manner::Slow(String::new(), Duration::from_millis(50)));
+    stage.options.foreseen = (0..FORESEEN_MAX).map(|n| format!("Is it number {n}?")).collect();
+    let (voice, _events, _) = stage.start();
+    server.behave(Manner::Deaf);
+    thread::sleep(Duration::from_millis(200));
+    let began = Instant::now();
+    drop(voice);
+    assert!(began.elapsed() < PATIENCE / 2, "in advance: {:?}", began.elapsed());
+}
+
+#[test]
+fn voice_of_a_server_needs_no_program_and_returns_with_the_server() {
+    let server = StandIn::start(Manner::Offers(Info::default()));
+    let mut stage = Stage::new(VoiceMode::Aloud, "exit 0");
+    stage.options.program = Program::EspeakNg("/nonexistent/espeak-ng".into());
+    stage.options.server = by_server(&server);
+    let error = Voice::try_out(stage.options.clone()).unwrap_err();
+    assert!(error.contains("it offers no voice; nothing takes its place: "), "{error}");
+    let (voice, events, output) = stage.start();
+    assert!(matches!(output, VoiceOutput::Aloud(_)), "{output:?}");
+    voice.speak(1, FILE, "Is it white?").unwrap();
+    assert!(events.failure().contains("install the package espeak-ng"));
+    server.behave(Manner::Answer(String::new()));
+    voice.speak(2, FILE, "Is it white?").unwrap();
+    assert_eq!([events.next(), events.next()], [(2, Started), (2, Ended)]);
 }

@@ -1,7 +1,6 @@
 //! The client against servers that are dead, slow, late, silent, and send anything.
 
 use std::cell::Cell;
-use std::net::TcpListener;
 use std::time::Instant;
 
 use super::*;
@@ -13,7 +12,7 @@ const ANSWER: Duration = Duration::from_millis(300);
 const PATIENCE: Duration = Duration::from_secs(20);
 
 fn client(server: &StandIn, answer: Duration) -> Client {
-    Client { address: server.address.clone(), connect: PATIENCE, answer }
+    Client::new(server.address.clone(), PATIENCE, answer)
 }
 
 fn transcribe(client: &Client) -> Result<String, ClientError> {
@@ -32,7 +31,10 @@ fn client_transcribes_synthesises_and_describes() {
     let sound = synthesize(&client).unwrap();
     assert_eq!((sound.format, sound.audio.len()), (FORMAT, 48_000));
     assert_eq!(client.describe(&|| false).unwrap().asr[0].name, "stand-in");
-    assert_eq!(client.examine().unwrap(), format!("stand-in 1, stand-in 1 at {}", server.address));
+    let expected = Ok(format!("stand-in 1 at {}", server.address));
+    for kind in [Kind::Recogniser, Kind::Voice] {
+        assert_eq!(client.examine(kind, &|| false), expected);
+    }
     let terms = vec!["white".to_owned()];
     let text = "Is it white?".to_owned();
     assert_eq!(server.requests(), [Request::Transcribe(terms, 16_000), Request::Synthesize(text)]);
@@ -42,10 +44,10 @@ fn client_transcribes_synthesises_and_describes() {
 
 #[test]
 fn client_reports_a_server_that_is_dead() {
-    let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
     for host in ["127.0.0.1", "no-such-host.invalid"] {
-        let address = Address { host: host.to_owned(), port };
-        let client = Client { address, connect: PATIENCE, answer: ANSWER };
+        // No server of a test has this port.
+        let address = Address { host: host.to_owned(), port: 1 };
+        let client = Client::new(address, PATIENCE, ANSWER);
         assert!(matches!(transcribe(&client), Err(ClientError::Unreachable(_))), "{host}");
     }
 }
@@ -103,6 +105,17 @@ fn client_reports_garbage_failures_and_cut_answers() {
         let error = transcribe(&client).unwrap_err().to_string();
         assert!(error.contains(expected), "{manner:?}: {error}");
     }
+}
+
+#[test]
+fn client_examines_a_server_for_its_own_kind_of_program() {
+    let program = Program { name: "piper".to_owned(), version: None };
+    let server = StandIn::start(Manner::Offers(Info { asr: Vec::new(), tts: vec![program] }));
+    let client = client(&server, PATIENCE);
+    let found = client.examine(Kind::Voice, &|| false);
+    assert_eq!(found, Ok(format!("piper at {}", server.address)));
+    let missing = client.examine(Kind::Recogniser, &|| false).unwrap_err();
+    assert_eq!(missing.to_string(), "it offers no recogniser");
 }
 
 #[test]

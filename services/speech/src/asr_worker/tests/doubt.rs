@@ -49,8 +49,11 @@ impl Network for Sure {
 }
 
 /// Starts a worker with an unsure first recogniser; returns also the lengths of the second one's
-/// segments, and its permission to answer. It may decide alone.
-fn unsure(decides: bool) -> (AsrWorker, Receiver<In<'static>>, Receiver<usize>, Sender<()>) {
+/// segments, and its permission to answer within `patience`. It may decide alone.
+fn unsure(
+    decides: bool,
+    patience: Duration,
+) -> (AsrWorker, Receiver<In<'static>>, Receiver<usize>, Sender<()>) {
     let ((heard, hears), (go, permission)) = (unbounded(), unbounded());
     let sure: Box<dyn Network + Send> = Box::new(Sure { heard, permission });
     let second = match decides {
@@ -58,7 +61,7 @@ fn unsure(decides: bool) -> (AsrWorker, Receiver<In<'static>>, Receiver<usize>, 
         false => SecondOpinion::with(move || Some(sure)),
     };
     let opened = Opened { second: Some(second), ..alone(Unsure) };
-    let (worker, events) = worker(move || Ok(opened));
+    let (worker, events) = worker_within(patience, move || Ok(opened));
     next(&events);
     (worker, events, hears, go)
 }
@@ -82,7 +85,7 @@ fn answer(events: &Receiver<In<'static>>) -> RecognisedSegment {
 
 #[test]
 fn asr_worker_asks_the_second_recogniser_where_the_first_is_in_doubt() {
-    let (worker, events, hears, go) = unsure(false);
+    let (worker, events, hears, go) = unsure(false, PATIENCE);
     worker.decode_early(1, paused(16_000, 512));
     assert!(early(&events).awaits_second);
     let end = paused(16_000, 3_200);
@@ -120,7 +123,7 @@ fn both_recognisers_listen_at_once() {
 
 #[test]
 fn asr_worker_answers_with_the_first_opinion_where_the_second_is_late() {
-    let (worker, events, _hears, _go) = unsure(false);
+    let (worker, events, _hears, _go) = unsure(false, Duration::from_millis(600));
     for sound in [1, 2] {
         worker.submit(sound, RecognitionInput::Speech(paused(16_000, 512))).unwrap();
     }
@@ -132,7 +135,7 @@ fn asr_worker_answers_with_the_first_opinion_where_the_second_is_late() {
 
 #[test]
 fn asr_worker_takes_the_words_of_a_server_once_for_each_whole_utterance() {
-    let (worker, events, hears, go) = unsure(true);
+    let (worker, events, hears, go) = unsure(true, PATIENCE);
     for pause in [512, 3_200] {
         worker.decode_early(1, paused(16_000, pause));
         let found = early(&events);
@@ -151,7 +154,7 @@ fn asr_worker_takes_the_words_of_a_server_once_for_each_whole_utterance() {
 
 #[test]
 fn asr_worker_stops_at_once_while_a_server_is_slow() {
-    let (worker, events, hears, _go) = unsure(true);
+    let (worker, events, hears, _go) = unsure(true, PATIENCE);
     worker.submit(1, RecognitionInput::Speech(paused(16_000, 512))).unwrap();
     hears.recv_timeout(PATIENCE).unwrap();
     let stop = paused(4_000, 512);
@@ -167,15 +170,33 @@ fn asr_worker_stops_at_once_while_a_server_is_slow() {
 }
 
 #[test]
+fn asr_worker_waits_for_no_opinion_on_a_recording_while_an_utterance_does() {
+    let (worker, events, hears, go) = unsure(true, PATIENCE);
+    worker.submit(1, RecognitionInput::Speech(paused(16_000, 512))).unwrap();
+    hears.recv_timeout(PATIENCE).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("x.wav");
+    let quiet = vec![0; 16_000];
+    write_wav(&path, &[&quiet[..], &testing::voice(1.0), &quiet].concat()).unwrap();
+    worker.submit(2, file(&path)).unwrap();
+    let recording = result(&events);
+    let segments = recording.segments.unwrap();
+    assert_eq!((recording.sound, &segments[0].heard.second), (2, &SecondView::Late));
+    go.send(()).unwrap();
+    let live = result(&events);
+    assert_eq!((live.sound, text(&live.segments.unwrap()[0])), (1, "white"));
+}
+
+#[test]
 fn asr_worker_asks_for_no_second_opinion_on_a_stop() {
-    let (worker, events, _hears, _go) = unsure(false);
+    let (worker, events, _hears, _go) = unsure(false, PATIENCE);
     worker.submit(1, RecognitionInput::Speech(paused(4_000, 512))).unwrap();
     assert_eq!(answer(&events).heard.second, SecondView::NotAsked);
 }
 
 #[test]
 fn asr_worker_forgets_a_doubt_about_an_utterance_that_goes_on() {
-    let (worker, events, hears, go) = unsure(false);
+    let (worker, events, hears, go) = unsure(false, PATIENCE);
     worker.decode_early(1, paused(16_000, 512));
     assert!(early(&events).awaits_second);
     assert_eq!(hears.recv(), Ok(16_512));

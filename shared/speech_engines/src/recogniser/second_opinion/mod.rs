@@ -24,7 +24,7 @@ use scene::Scene;
 
 use super::RecogniserUnavailable;
 use crate::worker_thread::WorkerThread;
-use messages::Hypothesis;
+use messages::{CONFIDENCES_MAX, Hypothesis};
 
 /// The second recogniser's result for an utterance.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -44,6 +44,8 @@ const NO_SPEECH: f32 = 0.4;
 /// Confidence in each word of a recogniser that decides alone and states none. Recognisers of open
 /// vocabulary mistake a word in ten of short commands; a belief must not take them as certain.
 const CONFIDENCE: f32 = 0.9;
+/// Characters of the words of a recogniser that decides alone: a minute of fast speech.
+pub(super) const TEXT_MAX: usize = 2_000;
 
 impl Opinion {
     /// Returns whether the network heard no speech.
@@ -54,6 +56,13 @@ impl Opinion {
     /// Returns the hypotheses of both recognisers, heaviest first.
     pub fn combined_with(&self, first: &[Hypothesis]) -> Vec<Hypothesis> {
         combine::combined(first, self)
+    }
+
+    /// Returns whether its own words are cut, or more than those whose confidence is published:
+    /// the others would count as certain.
+    pub fn is_too_long(&self) -> bool {
+        self.text.split_whitespace().count() > CONFIDENCES_MAX
+            || self.text.chars().count() > TEXT_MAX
     }
 
     /// Returns its own words as the only hypothesis, if there are any.
