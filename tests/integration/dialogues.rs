@@ -134,7 +134,7 @@ pub(crate) fn last_heard(group: &Group) -> (String, Vec<u64>) {
 fn words_answer_the_line_that_the_command_line_names() {
     let group = Group::up(&[]);
     let first = asked_by_line(&group, "get me the bowl", 0);
-    let second = asked_by_line(&group, "no", first);
+    let second = asked_by_line(&group, "white", first);
     assert_eq!(group.status()["prompt"], second);
     let early = group.call(&["say", "--seen", "999", "no"]);
     assert_eq!(early.code, Some(64), "{early:?}");

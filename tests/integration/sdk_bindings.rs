@@ -145,7 +145,7 @@ fn sdk_c_client_answers_the_line_and_releases_the_stop_that_were_shown() {
     let (_out, answer) = compiled(ANSWER);
     let group = Group::up(&[]);
     let first = asked_by_line(&group, "get me the bowl", 0);
-    asked_by_line(&group, "no", first);
+    asked_by_line(&group, "white", first);
     group.must(&["stop-motion"]);
     let seen = group.arm()["stop"].as_u64().expect("a number");
     group.must(&["stop-motion"]);

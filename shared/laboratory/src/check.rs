@@ -58,6 +58,8 @@ pub(super) fn verdict(
     match report.verdict(settings) {
         Err(problems) => refused(&problems, out),
         Ok(settings) if out.is_json() => {
+            let stated = settings.warnings().iter().map(ToString::to_string);
+            let warnings: Vec<String> = stated.chain(warnings).collect();
             out.json(&as_json(&settings, &warnings, with_values))?;
             Ok(Exit::Ok)
         }
@@ -66,6 +68,9 @@ pub(super) fn verdict(
             out.line(format_args!("{} {good}", from.display()))?;
             for line in summary(&settings) {
                 out.line(line)?;
+            }
+            for warning in settings.warnings() {
+                note(format_args!("warning: {warning}"));
             }
             for assumed in assumptions(&settings) {
                 note(format_args!("warning: robot: {assumed}"));
