@@ -321,6 +321,7 @@ pub fn give(
 }
 
 /// As [`give`], a release of this stop alone; 0 stands for any.
+///
 /// # Errors
 /// As [`give`], or another stop is in force.
 pub fn release(

@@ -122,9 +122,14 @@ impl Conversation {
     /// Polls until the policy has published or a timeout has passed: the first utterance needs
     /// the state before it.
     pub(super) fn first_look(&mut self) -> Result<(), Failure> {
+        self.look_for(|latest| latest.view.is_some())
+    }
+
+    /// As [`Conversation::first_look`], until `is_known`.
+    fn look_for(&mut self, is_known: impl Fn(&Latest) -> bool) -> Result<(), Failure> {
         let (until, mut polling) = (Instant::now() + FIRST_PATIENCE, Polling::default());
         self.look()?;
-        while Instant::now() < until && self.latest.view.is_none() {
+        while Instant::now() < until && !is_known(&self.latest) {
             polling.pause();
             self.look()?;
         }
@@ -197,16 +202,10 @@ impl Conversation {
     }
 }
 
-/// Returns what a running group states at the moment.
-pub(super) fn glance(paths: &GroupPaths) -> Option<Latest> {
+/// Returns what a running group states at the moment, once `is_known` or a second has passed.
+pub(super) fn glance(paths: &GroupPaths, is_known: impl Fn(&Latest) -> bool) -> Option<Latest> {
     let mut conversation = Conversation::join(paths).ok()?;
-    conversation.first_look().ok()?;
-    // Speech states what it hears by itself.
-    let (until, mut polling) = (Instant::now() + FIRST_PATIENCE, Polling::default());
-    while conversation.latest.hearing.is_none() && Instant::now() < until {
-        polling.pause();
-        conversation.look().ok()?;
-    }
+    conversation.look_for(is_known).ok()?;
     Some(conversation.latest)
 }
 

@@ -16,6 +16,7 @@ use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 use service::printable::one_line;
 use service::submission::Submission;
+use service::view::Latest;
 use service::{Span, Time};
 use vocabulary::PersonId;
 
@@ -60,7 +61,8 @@ pub(super) fn say(paths: &GroupPaths, args: &SayArgs, out: &mut Output<'_>) -> O
 
 /// Fails for a prompt that is not known to have been said: the speech service would wait for it.
 fn must_be_said(paths: &GroupPaths, seen: PromptId) -> Result<(), Failure> {
-    let Some(latest) = glance(paths).filter(|it| it.view.is_some()) else { return Ok(()) };
+    let is_known = |latest: &Latest| latest.view.is_some();
+    let Some(latest) = glance(paths, is_known).filter(is_known) else { return Ok(()) };
     if seen <= latest.prompt() {
         return Ok(());
     }

@@ -57,7 +57,7 @@ impl Manager {
         let said: Vec<AttributeId> = reading.base.iter().flat_map(|word| of(*word)).collect();
         // An answer says no more than it was asked: what it contradicts is not taken back by it, and
         // the robot says that nothing fits both.
-        let is_answer = open.posterior.said().is_some()
+        let is_reply = open.posterior.said().is_some()
             && question.attribute().is_some_and(|asked| said.iter().all(|k| *k == asked));
         let objects = scene.ids();
         let fits = |i: &ObjectId| reading.base.iter().all(|word| model.has_word(*i, *word));
@@ -67,7 +67,7 @@ impl Manager {
             word.is_some_and(|word| {
                 let applies = |i: &ObjectId| model.has_word(*i, word);
                 of(word).any(|k| said.contains(&k))
-                    || !is_answer && !fitting.is_empty() && !fitting.iter().any(applies)
+                    || !is_reply && !fitting.is_empty() && !fitting.iter().any(applies)
             })
         };
         let Some(mut open) = state.open.take() else { return };
