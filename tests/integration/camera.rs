@@ -31,7 +31,8 @@ fn names(objects: &[Value]) -> Vec<&str> {
 
 /// The objects that were recognised as `class`.
 fn of<'a>(objects: &'a [Value], class: &str) -> Vec<&'a Value> {
-    objects.iter().filter(|object| object["classes"][class] == 1.0).collect()
+    let is_of = |object: &&Value| object["classes"][class].as_f64().is_some_and(|p| p > 0.9);
+    objects.iter().filter(is_of).collect()
 }
 
 /// Waits for the table on which there is exactly one object of that class, and returns it.

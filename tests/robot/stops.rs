@@ -68,7 +68,7 @@ fn emergency_stop_latches_and_the_pick_resumes_after_release() {
     world.assert_delivered_once();
 }
 
-/// Who has seen the motion stop alone does not release what the button stops.
+/// A release of the motion stop that was in force before must not lift that of the button.
 #[test]
 fn emergency_stop_is_another_stop_than_the_one_in_force() {
     let mut world = World::new(&[]);

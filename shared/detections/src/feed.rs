@@ -207,7 +207,11 @@ impl<'a> Feed<'a> {
         let camera =
             self.camera.ok_or("a box in pixels; help: --camera FILE, the camera_info of ROS")?;
         let xyz = match (depth, self.args.height) {
-            (Some(depth), _) => camera.at_depth(&self.frame, center, depth),
+            (Some(depth), _) if depth > 0.0 && depth.is_finite() => {
+                camera.at_depth(&self.frame, center, depth)
+            }
+            // Depth cameras state 0 for what they cannot measure.
+            (Some(depth), _) => return Err(format!("expected a `depth` above 0 m, found {depth}")),
             (None, Some(z)) => camera.at_height(&self.frame, center, z).ok_or_else(|| {
                 format!(
                     "pixel {center:?} does not show the height {z} m; help: see --height, --frame"

@@ -18,6 +18,7 @@ use crate::args::{SceneCheckArgs, SceneNewArgs, SceneVerb};
 use crate::check;
 use crate::progress::Progress;
 
+mod arrange;
 mod diff;
 mod place;
 mod show;

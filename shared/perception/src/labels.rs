@@ -1,7 +1,7 @@
 //! Labels of detectors as classes and attributes: names of objects in the scene file, or the scene's
 //! own words, as in "a red block".
 
-use scene::{AttributeId, ObjectId, Scene, ValueId, plural};
+use scene::{AttributeId, ObjectId, Role, Scene, ValueId, likeliest, plural};
 
 use crate::{Detection, Refusal};
 
@@ -20,14 +20,17 @@ pub fn is_known(label: &str, file: &Scene) -> bool {
 /// Reads the labels of a detection. Values that it states directly come before those of a label.
 ///
 /// # Errors
-/// None of its labels is known.
+/// Its likeliest label is not known: the others are no substitute for it.
 pub(crate) fn read(detection: Detection, file: &Scene) -> Result<Detection, Refusal> {
     let labels = &detection.classes;
+    if likeliest(labels).is_some_and(|label| !is_known(label, file)) {
+        return Err(unknown(&detection, file));
+    }
     if labels.iter().all(|(label, _)| file.object_named(label).is_some()) {
         return Ok(detection);
     }
     let mut read = Detection { classes: Vec::new(), ..detection.clone() };
-    for (label, p) in labels {
+    for (label, p) in labels.iter().filter(|(_, p)| *p > 0.0) {
         if file.object_named(label).is_some() {
             add(&mut read.classes, label, *p);
             continue;
@@ -48,7 +51,7 @@ pub(crate) fn read(detection: Detection, file: &Scene) -> Result<Detection, Refu
             }
         }
     }
-    if read.classes.is_empty() { Err(unknown(&detection, file)) } else { Ok(read) }
+    Ok(read)
 }
 
 /// The refusal of a detection without a known label.
@@ -65,7 +68,7 @@ fn add(chances: &mut Vec<(String, f64)>, name: &str, p: f64) {
     }
 }
 
-/// The values that a label names; `None` if it has another word, or no word of the scene at all.
+/// The values that a label names; `None` if it has another word, or none but those of places: "table".
 fn values(label: &str, file: &Scene) -> Option<Vec<(AttributeId, ValueId)>> {
     let label = words(label);
     let nouns = [file.noun().to_owned(), plural(file.noun())].map(|noun| words(&noun));
@@ -89,7 +92,11 @@ fn values(label: &str, file: &Scene) -> Option<Vec<(AttributeId, ValueId)>> {
             continue;
         };
         found.extend(value.filter(|value| !found.contains(value)));
-        (rest, is_named) = (&rest[phrase.len()..], true);
+        let is_place = |(k, v): (AttributeId, ValueId)| {
+            file.attributes()[k.index()].values[v.index()].role() == Role::Place
+        };
+        is_named |= !value.is_some_and(is_place);
+        rest = &rest[phrase.len()..];
     }
     is_named.then_some(found)
 }

@@ -2,7 +2,8 @@
 //!
 //! A look errs in two ways. Noise differs from look to look: other looks outvote it, the more of
 //! them the less they disagree. Whatever misleads a camera in its place (light, pose, training)
-//! misleads each of its looks alike, and no number of them outvotes it.
+//! misleads each of its looks alike. What it states for other names then stays; if it states one
+//! name alone, at every look, that is believed in the end.
 
 /// Looks that count; earlier ones fade.
 const LOOKS_MAX: f64 = 40.0;

@@ -1,11 +1,11 @@
-//! Places for objects that the arm cannot fetch from theirs: the nearest, or any on the table.
+//! What the arm can fetch among other objects, and the nearest place for what it cannot.
 
 use std::f64::consts::TAU;
 use std::time::Instant;
 
 use manipulation::{Cuboid, Limb, ObjectPose, PlanError, fetching_limb};
 
-use crate::{ArmSetup, Watch};
+use crate::ArmSetup;
 
 /// Distances at which a nearer place is looked for, centimetres.
 const RINGS_CM: [f64; 22] = [
@@ -17,15 +17,7 @@ const RINGS_CM: [f64; 22] = [
 const DIRECTIONS: usize = 16;
 
 /// Distance between boxes of objects below which a place is not tried, metres.
-const GAP_M: f64 = 0.02;
-
-/// Distances between boxes that are tried one after the other on a free table, metres: loose
-/// spacing leaves room for the next object.
-const LOOSE_M: [f64; 3] = [0.10, 0.05, GAP_M];
-
-/// Spacing of the places tried on a free table, and their extent from its middle, metres.
-const GRID_M: f64 = 0.05;
-const GRID_STEPS: i32 = 20;
+pub const GAP_M: f64 = 0.02;
 
 /// Farthest distance at which an object is asked whether it is in the way, metres, and most objects
 /// that are asked.
@@ -55,7 +47,7 @@ impl<'a> Arrangement<'a> {
     }
 
     /// Whether searches are given up.
-    pub(crate) fn is_late(&self) -> bool {
+    pub fn is_late(&self) -> bool {
         self.until.is_some_and(|until| Instant::now() >= until)
     }
 
@@ -96,83 +88,29 @@ impl<'a> Arrangement<'a> {
             .find(|&place| self.fits(i, place, GAP_M))
     }
 
-    /// Moves every object that cannot be fetched from its place to the nearest one where it can,
-    /// then puts each of `new`, which have no place yet, on the table. Returns those with a new
-    /// place. Others keep theirs, out of the others' way; no place helps those that cannot be
-    /// grasped.
-    pub fn arrange(&mut self, new: &[usize], watch: Watch<'_>) -> Vec<usize> {
-        new.iter().for_each(|&i| self.stands[i] = false);
-        let is_misplaced = |&i: &usize| {
-            watch(format!("checking reach: {i} of {} places", self.poses.len()));
-            !self.is_late()
-                && matches!(self.limb(i), Err(error) if !matches!(error, PlanError::Grasp(_)))
-        };
-        let known = (0..self.poses.len()).filter(|i| self.stands[*i]);
-        let misplaced: Vec<usize> = known.filter(is_misplaced).collect();
-        misplaced.iter().for_each(|&i| self.stands[i] = false);
-        let mut moved = Vec::new();
-        for (n, &i) in misplaced.iter().chain(new).enumerate() {
-            watch(format!("finding places: {n} of {}", misplaced.len() + new.len()));
-            let stays = self.poses[i].xyz_m;
-            let place = if new.contains(&i) {
-                self.on_table(i)
-            } else if self.fits(i, stays, GAP_M) {
-                Some(stays)
-            } else {
-                self.nearest(i).or_else(|| self.on_table(i))
-            };
-            if let Some(place) = place {
-                (self.poses[i].xyz_m, self.stands[i]) = (place, true);
-                moved.extend((place != stays).then_some(i));
-            }
-        }
-        moved
-    }
-
-    /// Returns the reason for which an object without a place gets none.
-    pub fn why_unplaced(&self, i: usize) -> String {
-        match self.limb(i) {
-            Err(PlanError::Grasp(error)) => format!("cannot be grasped anywhere: {error}"),
-            _ if self.is_late() => {
-                "has no place: the search took too long; help: set its `xyz`".to_owned()
-            }
-            _ => "finds no free place on the table that the arm reaches".to_owned(),
-        }
-    }
-
-    pub(crate) fn setup(&self) -> &'a ArmSetup {
+    /// The arm that fetches them.
+    pub fn setup(&self) -> &'a ArmSetup {
         self.setup
     }
 
-    /// The place of an object, metres, frame `base`.
-    pub fn place(&self, i: usize) -> [f64; 3] {
-        self.poses[i].xyz_m
+    /// Takes an object off its place: the others need not keep clear of it.
+    pub fn lift(&mut self, i: usize) {
+        self.stands[i] = false;
     }
 
-    /// Returns a place on the table, the nearest to the middle of the arm's reach.
-    fn on_table(&self, i: usize) -> Option<[f64; 3]> {
-        let plan = &self.setup.plan;
-        // In front of the robot, a little nearer than objects are handed over.
-        let middle_x = rounded(plan.hand_over_xyz_m[0] - 0.1);
-        let z = plan.table_z_m + 0.5 * self.poses[i].size_m[2];
-        let steps = || -GRID_STEPS..=GRID_STEPS;
-        let mut places: Vec<[f64; 3]> = steps()
-            .flat_map(|n| steps().map(move |k| (f64::from(n) * GRID_M, f64::from(k) * GRID_M)))
-            .map(|(dx, dy)| [rounded(middle_x + dx), rounded(dy), (z * 1e4).round() / 1e4])
-            .collect();
-        let from_middle = |at: &[f64; 3]| (at[0] - middle_x).hypot(at[1]);
-        // The sort is stable, so that equal distances keep their order.
-        places.sort_by(|a, b| from_middle(a).total_cmp(&from_middle(b)));
-        LOOSE_M
-            .iter()
-            .flat_map(|gap_m| places.iter().map(move |place| (*gap_m, *place)))
-            .take_while(|_| !self.is_late())
-            .find_map(|(gap_m, place)| self.fits(i, place, gap_m).then_some(place))
+    /// Puts an object at a place, metres, frame `base`.
+    pub fn put(&mut self, i: usize, place: [f64; 3]) {
+        (self.poses[i].xyz_m, self.stands[i]) = (place, true);
+    }
+
+    /// The poses of all objects, in or off their places.
+    pub fn poses(&self) -> &[ObjectPose] {
+        &self.poses
     }
 
     /// Returns whether the arm can fetch `i` at a place that is `gap_m` from others, and still
     /// fetch those that it can fetch now.
-    fn fits(&self, i: usize, place: [f64; 3], gap_m: f64) -> bool {
+    pub fn fits(&self, i: usize, place: [f64; 3], gap_m: f64) -> bool {
         let pose = ObjectPose { xyz_m: place, ..self.poses[i] };
         if self.others(i).any(|j| are_near(&pose, &self.poses[j], gap_m)) {
             return false;
@@ -218,7 +156,7 @@ fn distance_m(a: &[f64; 3], b: &[f64; 3]) -> f64 {
 }
 
 /// Rounds to millimetres, as finely as places on a table are measured.
-fn rounded(m: f64) -> f64 {
+pub fn rounded(m: f64) -> f64 {
     // Zero has no sign in a file.
     (m * 1e3).round() / 1e3 + 0.0
 }

@@ -15,7 +15,7 @@ mod testing;
 #[cfg(test)]
 mod tests;
 
-pub use arrange::Arrangement;
+pub use arrange::{Arrangement, GAP_M, rounded};
 pub use load::{Watch, durations, examine, load, load_known};
 pub use measure::measure;
 pub use motion::{Extent, MotionError, Motions, Refusal};

@@ -175,7 +175,7 @@ fn move_help(
         None => format!("no place at this height helps: {OTHERWISE}"),
         Some(to) => {
             let [x, y, z] = to;
-            let moved = directions(arrangement.place(i), to);
+            let moved = directions(arrangement.poses()[i].xyz_m, to);
             format!("move it {moved}: xyz = [{x}, {y}, {z}]")
         }
     };

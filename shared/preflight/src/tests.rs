@@ -278,35 +278,6 @@ fn places_are_checked_in_the_same_round_as_everything_else() {
     assert!(found.contains("hover_m") && !found.contains("out of reach"), "{found}");
 }
 
-/// The shipped arm, and bowls that have no place yet.
-fn unplaced(count: usize) -> (ArmSetup, Vec<manipulation::ObjectPose>) {
-    let settings = Settings::load(&shipped(), None, &[]).unwrap();
-    let setup = ArmSetup::new(&settings).unwrap();
-    let bowl = crate::pose(&settings.scene.objects()[0].placement.unwrap());
-    (setup, vec![manipulation::ObjectPose { xyz_m: [0.0; 3], ..bowl }; count])
-}
-
-#[test]
-fn nine_objects_without_places_are_arranged_the_same_way_each_time() {
-    let (setup, poses) = unplaced(9);
-    let all: Vec<usize> = (0..9).collect();
-    let arranged = || {
-        let mut arrangement = crate::Arrangement::new(&setup, poses.clone());
-        assert_eq!(arrangement.arrange(&all, &|_| {}), all);
-        all.iter().for_each(|&i| assert!(arrangement.limb(i).is_ok(), "{i}"));
-        all.iter().map(|&i| arrangement.place(i)).collect::<Vec<_>>()
-    };
-    assert_eq!(arranged(), arranged());
-}
-
-#[test]
-fn a_search_for_places_ends_in_time_and_says_so() {
-    let (setup, poses) = unplaced(2);
-    let mut late = crate::Arrangement::new(&setup, poses).until(std::time::Instant::now());
-    assert_eq!(late.arrange(&[0, 1], &|_| {}), [] as [usize; 0]);
-    assert!(late.why_unplaced(1).contains("took too long"), "{}", late.why_unplaced(1));
-}
-
 /// Baxter with another velocity limit of its first joints.
 fn slower() -> String {
     let slower = BAXTER_URDF.replacen("velocity=\"1.5\"", "velocity=\"0.5\"", 20);

@@ -1,4 +1,4 @@
-//! A detector whose every look errs anew, unlike the simulated camera, which errs alike at each.
+//! A detector whose errors are independent from look to look, unlike those of the simulated camera.
 
 use baxter::camera::Standing;
 use messages::Sighting;

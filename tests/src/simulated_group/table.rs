@@ -32,7 +32,7 @@ pub enum Happening {
 pub enum Eye {
     /// A camera that takes an object for the same thing at every look.
     Camera(Camera),
-    /// A detector that errs anew at every look.
+    /// A detector whose errors are independent from look to look.
     Detector(NoisyDetector),
 }
 

@@ -84,7 +84,7 @@ struct Chat<'a, 'b> {
     ended: Option<u64>,
     orders: MotionOrders,
     guard: ResumeGuard,
-    /// The stop in force, as the user was told.
+    /// The stop in force, as last seen and noted here.
     stop: StopId,
 }
 

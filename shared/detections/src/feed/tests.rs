@@ -84,6 +84,11 @@ fn boxes_become_objects_in_front_of_the_robot() {
     let (used, _) = read(&by_id, &coco).unwrap();
     assert_at(&used[0], [0.7, 0.1, -0.02]);
     assert_eq!(used[0].classes, [("metal".to_owned(), 0.7)]);
+    for depth in [0.0, -0.9] {
+        let mut coco = coco.clone();
+        coco[0]["depth"] = json!(depth);
+        assert!(read(&by_id, &coco).unwrap_err().contains("`depth` above 0 m"), "{depth}");
+    }
 }
 
 #[test]

@@ -44,8 +44,8 @@ impl Manager {
 
     /// Retracts words that the user replaces: by others of the same attribute ("a mug", and then
     /// "make it a cup"), or by a description that fits objects to none of which they apply ("the
-    /// white one in the cabinet", and then "the clear one") and that is no answer to a question about
-    /// what it says. Only if both are certain.
+    /// white one in the cabinet", and then "the clear one"), unless it answers a question about its own
+    /// attribute. Only if both are certain.
     pub(super) fn retract(&self, state: &mut State, heard: &Heard<'_>) {
         let Some((question, reading)) = likeliest(&heard.interpretations) else { return };
         let Some(open) = &state.open else { return };
@@ -55,8 +55,8 @@ impl Manager {
         let (scene, model) = (&self.setup.scene, &self.setup.model);
         let of = |word: WordId| model.meanings(word).iter().map(|(k, _)| *k);
         let said: Vec<AttributeId> = reading.base.iter().flat_map(|word| of(*word)).collect();
-        // An answer says no more than it was asked: what it contradicts is not taken back by it, and
-        // the robot says that nothing fits both.
+        // An answer is about the attribute in question alone: it takes back nothing about others. If
+        // nothing fits both, the robot says so.
         let is_reply = open.posterior.said().is_some()
             && question.attribute().is_some_and(|asked| said.iter().all(|k| *k == asked));
         let objects = scene.ids();

@@ -211,15 +211,12 @@ impl Interaction {
             Question::None => Vec::new(),
             other => vec![other],
         };
-        let mut asked: Vec<(Question, usize)> = Vec::new();
-        for question in self.prompts.iter().flat_map(|prompt| each(prompt.question)) {
-            match asked.iter_mut().find(|(known, _)| *known == question) {
-                Some((_, times)) => *times += 1,
-                None => asked.push((question, 1)),
-            }
-        }
-        asked.retain(|(_, times)| *times >= ASKED_MAX);
-        asked.into_iter().map(|(question, _)| question).collect()
+        // The robot may withdraw a question before there was time for an answer.
+        let prompts =
+            self.prompts.iter().filter(|prompt| prompt.answered.is_some() || prompt.times > 1);
+        let all: Vec<Question> = prompts.flat_map(|prompt| each(prompt.question)).collect();
+        let asked = |question: &Question| all.iter().filter(|it| *it == question).count();
+        all.iter().copied().filter(|question| asked(question) >= ASKED_MAX).collect()
     }
 
     /// Adds a line said since the pick was ordered; the oldest one is dropped for lack of room.

@@ -193,7 +193,7 @@ impl Reduced {
         let (mut splits, mut open) = (Cheapest::default(), Cheapest::default());
         let mut choices = Cheapest::default();
         let mut found = Vec::new();
-        // Of equal questions another one is left where the cheapest is not asked again.
+        // Before equal questions are reduced: a twin takes the place of one that is not asked again.
         let may = |query| problem.spent.is_empty() || !problem.is_spent(self.question(query));
         for (index, partition) in self.partitions.iter().enumerate() {
             let index = index as u16;

@@ -12,6 +12,7 @@ use serde::Serialize;
 use serde_json::{Value as Json, json};
 use service::exit::{Exit, Failure};
 
+use super::arrange::{arrange, why_unplaced};
 use super::{diff, examine, load, read};
 use crate::args::ScenePlaceArgs;
 use crate::check;
@@ -112,15 +113,15 @@ pub(super) fn places(
         .unzip();
     let new: Vec<usize> = (0..numbers.len()).filter(|&i| added.contains(&numbers[i])).collect();
     let mut arrangement = Arrangement::new(&setup, poses.clone()).until(Instant::now() + PATIENCE);
-    let changed = arrangement.arrange(&new, &|line| progress.at(line));
+    let changed = arrange(&mut arrangement, &new, &|line| progress.at(line));
     let unplaced = new.iter().filter(|i| !changed.contains(i)).map(|&i| {
         let object = objects[numbers[i]].name.clone();
-        Unplaced { object, why: arrangement.why_unplaced(i) }
+        Unplaced { object, why: why_unplaced(&arrangement, i) }
     });
     let unplaced = unplaced.collect();
     let placed = changed.iter().map(|&i| {
         let n = numbers[i];
-        let (to, from) = (arrangement.place(i), poses[i].xyz_m);
+        let (to, from) = (arrangement.poses()[i].xyz_m, poses[i].xyz_m);
         edit.set_place(n, to);
         let from = (!added.contains(&n)).then_some(from);
         Placed { object: objects[n].name.clone(), from, to }

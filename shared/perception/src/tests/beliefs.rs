@@ -90,9 +90,11 @@ fn labels_are_read_by_the_scenes_words() {
     assert!(each.iter().all(|p| (p - 1.0 / 3.0).abs() < 0.02), "{classes:?}");
     assert!(belief(&it, "color", "white") > 0.99);
     assert!((belief(&it, "size", "big") - 1.0 / 3.0).abs() < 0.02, "{classes:?}");
-    for unknown in ["a teapot", "a purple bowl", "white elephant", "", "the"] {
+    for unknown in ["a teapot", "a purple bowl", "white elephant", "cabinet", "", "the"] {
         let mut it = Scenery::new();
-        let look = Look { seen: vec![seen(unknown, 0.7, 0.1)], ..Look::default() };
+        let classes = [(unknown, 0.95), ("white", 0.05)].map(|(name, p)| (name.to_owned(), p));
+        let seen = vec![Detection { classes: classes.to_vec(), ..seen("white", 0.7, 0.1) }];
+        let look = Look { seen, ..Look::default() };
         let refused = it.report(CAMERA, Change::Look(look)).unwrap_err().to_string();
         assert!(refused.contains(unknown) && refused.contains("white2, white3"), "{refused}");
     }

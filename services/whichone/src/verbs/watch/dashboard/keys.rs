@@ -204,6 +204,7 @@ mod tests {
         assert_eq!(press(&mut Keyboard::default(), "rs", 0), [STOP]);
         let mut keyboard = Keyboard::default();
         assert_eq!(press(&mut keyboard, "rresume\x13\n", 0), [STOP], "and no release after it");
+        keyboard = Keyboard::default();
         // Another stop is given while the word is typed.
         press(&mut keyboard, "rresume", 2_000);
         assert_eq!(keyboard.press(key('\n'), StopId(8), at(2_000)), Some(RELEASE));
