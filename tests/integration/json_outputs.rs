@@ -37,6 +37,7 @@ const LINES: [&str; 29] = [
     "scene check bowls",
     "init DIR/config",
     "export mcap --out DIR/x.mcap",
+    "export trace --out DIR/x.json",
     "report --out DIR/report",
     "licences",
     "down",

@@ -4,6 +4,7 @@ use recording::list::{Entry, State, entries, summary};
 use rustix::process::Signal;
 use serde_json::Value;
 use std::collections::BTreeSet;
+use std::fs;
 use std::path::PathBuf;
 use std::process::Command;
 use std::time::{SystemTime, UNIX_EPOCH};
@@ -152,9 +153,27 @@ fn exports(group: &Group, files: &[PathBuf], topics: &serde_json::Map<String, Va
     let records: usize =
         ["speech", "policy", "arm"].iter().map(|service| journal(group, service).len()).sum();
     assert_eq!(found["topics"]["/log"]["count"], records);
+    group.must(&["export", "trace", &journals, "--out", &out("trace.json")]);
+    check_trace(&fs::read(folder.path().join("trace.json")).unwrap());
     // A recording and its journals agree about the time.
     let ends = [&all, &found].map(|it| it["span"][1].as_u64().unwrap());
     assert!(ends[0].abs_diff(ends[1]) < 120_000_000_000, "{ends:?}");
+}
+
+/// Each utterance leads to the decision about it, and on to what is said or moved, at later times.
+fn check_trace(json: &[u8]) {
+    let trace: Value = serde_json::from_slice(json).unwrap();
+    let events = trace["traceEvents"].as_array().unwrap();
+    let of = |kind: &str| events.iter().filter(move |it| it["ph"] == kind);
+    let heard = of("X").filter(|it| it["cat"] == "heard").count();
+    assert!(heard > 1, "{trace}");
+    for begin in of("s") {
+        let end = of("f").find(|it| it["id"] == begin["id"]).unwrap();
+        assert!(begin["ts"].as_f64() <= end["ts"].as_f64(), "{begin} {end}");
+    }
+    assert_eq!(of("s").count(), heard, "{trace}");
+    let moved = of("X").filter(|it| it["cat"] == "moved");
+    assert!(moved.into_iter().any(|it| it["dur"].as_f64() > Some(1e5)), "{trace}");
 }
 
 #[test]

@@ -180,6 +180,7 @@ fn every_verb_that_reads_a_file_refuses_a_pipe_at_once() {
         "export mcap pipe.mcap --out out.mcap",
         &format!("export mcap {flight} --out out.mcap"),
         "export mcap speech.journal --out out.mcap",
+        "export trace speech.journal --out out.json",
         "scene check pipe.toml",
         "scene place pipe.toml",
         "listen pipe",

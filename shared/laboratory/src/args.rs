@@ -13,7 +13,7 @@ mod study;
 pub use arm::{ArmPlotArgs, ArmVerb};
 pub use batch::{ArmArgs, GroundArgs, InputArgs, PlanArgs, ProblemArgs, WhichArm};
 pub use conform::ConformArgs;
-pub use export::{ExportVerb, McapArgs, PomdpArgs};
+pub use export::{ExportVerb, McapArgs, PomdpArgs, TraceArgs};
 pub use record::{OpenArgs, RecordVerb, RecorderArgs};
 pub use replay::ReplayArgs;
 pub use robot::{ImportArgs, RobotVerb, ServosArgs};

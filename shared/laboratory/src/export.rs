@@ -6,8 +6,10 @@ use service::group::{GroupError, GroupPaths};
 
 use crate::args::ExportVerb;
 
+mod journals;
 mod mcap;
 mod pomdp;
+mod trace;
 
 /// Executes `export`.
 pub(super) fn export(
@@ -18,5 +20,6 @@ pub(super) fn export(
     match verb {
         ExportVerb::Pomdp(args) => pomdp::export(args, out),
         ExportVerb::Mcap(args) => mcap::export(paths, args, out),
+        ExportVerb::Trace(args) => trace::export(paths, args, out),
     }
 }

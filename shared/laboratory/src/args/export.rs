@@ -13,6 +13,8 @@ pub enum ExportVerb {
     Pomdp(PomdpArgs),
     /// Recordings, journals or flights as one MCAP file, which Foxglove and other robotics tools open.
     Mcap(McapArgs),
+    /// Journals as a trace, which Perfetto opens: what was heard, decided, said and moved, and when.
+    Trace(TraceArgs),
 }
 
 /// Arguments of `export pomdp`.
@@ -35,6 +37,17 @@ pub struct McapArgs {
     ///
     /// The folder of a group has its recordings in `recordings`, its journals in `journal` and its
     /// flights in `flight`; `whichone record list` prints where that is.
+    #[arg(value_name = "SOURCE")]
+    pub source: Option<PathBuf>,
+    /// The file to write; an existing one is not replaced.
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+}
+
+/// Arguments of `export trace`.
+#[derive(Debug, Args)]
+pub struct TraceArgs {
+    /// A journal, or a folder of journals [default: those of the group].
     #[arg(value_name = "SOURCE")]
     pub source: Option<PathBuf>,
     /// The file to write; an existing one is not replaced.

@@ -21,13 +21,9 @@ use service::flight::{self, Direction, Head, Line};
 use service::group::{GroupError, GroupPaths};
 use service::journal_record::JournalLine;
 
+use super::journals;
 use crate::args::McapArgs;
 use crate::replay::service_of;
-
-/// End of the name of a journal.
-const JOURNAL: &str = "journal";
-/// Folder of kept settings next to the journals.
-const SETTINGS: &str = "settings";
 
 /// Writes the file.
 pub(super) fn export(
@@ -42,7 +38,7 @@ pub(super) fn export(
     };
     fs::metadata(source).map_err(|error| Failure::file(source, &error))?;
     safe_files::check_new_output(to).map_err(|error| Failure::file(to, &error))?;
-    let (journals, flights) = (journals_in(source), flights_in(source)?);
+    let (journals, flights) = (journals::of(source), flights_in(source)?);
     let (messages, noun) = if !flights.is_empty() {
         (steps(&flights, to)?, "step")
     } else if journals.is_empty() {
@@ -151,39 +147,10 @@ fn entry(head: &Head, step: Line) -> Entry {
     }
 }
 
-/// The journals of a folder, or the one that is named.
-fn journals_in(source: &Path) -> Vec<(Service, PathBuf)> {
-    let of = |service: Service| {
-        let file = match source.is_dir() {
-            true => source.join(format!("{}.{JOURNAL}", service.name())),
-            false => source.to_owned(),
-        };
-        let is_own = file.file_stem().is_some_and(|stem| stem == service.name());
-        let is_journal = file.extension().is_some_and(|it| it == JOURNAL) && file.is_file();
-        (is_own && is_journal).then_some((service, file))
-    };
-    Service::JOURNALED.into_iter().filter_map(of).collect()
-}
-
 /// The records of a journal. If their wall time is unknown, the last record gets the file's time of
 /// change, from which the others' follow.
 fn records_of(service: Service, file: &Path) -> Result<Vec<Entry>, Failure> {
-    let mut program: Command = command(service.name(), "journal");
-    program.arg(file).arg("--json").stderr(Stdio::inherit());
-    let settings = file.with_file_name(SETTINGS);
-    for folder in fs::read_dir(settings).into_iter().flatten().flatten() {
-        program.arg("--settings").arg(folder.path());
-    }
-    let output = program.output().map_err(|error| failed(&program, &error))?;
-    let lines = String::from_utf8_lossy(&output.stdout);
-    let lines = lines.lines().map(serde_json::from_str::<JournalLine>);
-    let lines: Vec<JournalLine> = lines.collect::<Result<_, _>>().map_err(|error| {
-        let what = format!("{}: unexpected output of {}: {error}", file.display(), service.name());
-        Failure::new(Exit::Invariant, what)
-    })?;
-    if !output.status.success() && lines.is_empty() {
-        return Err(Failure::new(Exit::of_process(output.status.code()), String::new()));
-    }
+    let lines = journals::lines(service, file)?;
     let changed = fs::metadata(file).and_then(|found| found.modified());
     let changed = changed.map_err(|error| Failure::file(file, &error))?;
     let changed_ns = changed.duration_since(UNIX_EPOCH).unwrap_or_default().as_nanos() as u64;
