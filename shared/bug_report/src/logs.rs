@@ -9,10 +9,10 @@ use std::time::Duration;
 use clap::Args;
 use command_line::Outcome;
 use command_line::output::{Ink, Output};
+use recording::log_tail::LogFile;
 use serde::{Deserialize, Serialize};
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
-use service::log_tail::LogFile;
 use service::printable::one_line;
 
 /// Arguments of `logs`.

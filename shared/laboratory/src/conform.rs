@@ -7,10 +7,10 @@ use command_line::configuration;
 use command_line::interrupt::Interrupt;
 use command_line::output::{Ink, Output};
 use messages::{Epoch, Service, Topic};
+use recording::log_tail::LogFile;
 use serde_json::{Value as Json, json};
 use service::bus::{BusError, PortError};
 use service::exit::{Exit, Failure};
-use service::log_tail::LogFile;
 
 use crate::args::ConformArgs;
 use bench::{Bench, Written};

@@ -4,7 +4,8 @@
 //! its messages, and the [`picture`] of the group in schemas that viewers draw. [`file`] writes one
 //! file, [`ring`] a ring of them in bounded space, [`recover`] completes the file of a killed
 //! writer, and [`list`] reads them. [`group_reader`] reads the messages of all channels from a
-//! running group, for a recorder and for a live view, whose messages are those of [`live`].
+//! running group, for a recorder and for a live view, whose messages are those of [`live`];
+//! [`log_tail`] reads the log of one service.
 //!
 //! Times in a file are wall-clock times. The messages themselves keep the machine's monotonic
 //! clock; the offset between both is constant within a file and part of its metadata.
@@ -24,6 +25,7 @@ mod json_schema;
 pub mod list;
 pub mod live;
 mod log_lines;
+pub mod log_tail;
 pub mod payload;
 pub mod picture;
 mod records;

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use service::log_tail::LogFile;
 use service::wall_time;
 
 use crate::foxglove::{Log, Time, level};
+use crate::log_tail::LogFile;
 
 /// End of the name of a log.
 const EXTENSION: &str = "log";

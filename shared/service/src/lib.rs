@@ -64,7 +64,6 @@ pub mod json_schema;
 pub mod kept_settings;
 pub mod launch;
 pub mod log_file;
-pub mod log_tail;
 pub mod logging;
 pub mod printable;
 pub mod program;
