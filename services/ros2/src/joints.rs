@@ -1,8 +1,9 @@
 //! Joint states under the names of the robot's description, the fingers included.
 
 use crate::types::{Header, JointState, Time};
+use measured_joints::MeasuredJoints;
 use messages::{JOINT_STATE_NAMES, JointStates};
-use robot_model::{MeasuredJoints, Robot};
+use robot_model::Robot;
 
 /// The joints of a description, and where their values are in the group's message.
 #[derive(Clone, Debug, PartialEq)]

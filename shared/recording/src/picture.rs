@@ -3,13 +3,14 @@
 use std::path::PathBuf;
 
 use config::Settings;
+use measured_joints::MeasuredJoints;
 use messages::layout::FixedMessage;
 use messages::topics::{self, Topic};
 use messages::{
     AudioChunk, JOINT_STATE_NAMES, PolicyView, Receipt, ReceiptStatus, RobotAct, TableView,
     TrajectoryView, WorldView,
 };
-use robot_model::{MeasuredJoints, Robot};
+use robot_model::Robot;
 use scene::{ObjectId, Scene};
 use serde::{Serialize, de::DeserializeOwned};
 use service::bus::AnyMessage;

@@ -50,6 +50,14 @@ impl Robot {
         }
         Ok(SerialChain { robot: self, joints, movable })
     }
+
+    /// The limbs: what stands before `_gripper` in the names of links. A finger slides, and is the end of no limb,
+    /// whatever its name.
+    pub fn limb_ends(&self) -> impl Iterator<Item = &str> {
+        let links = self.links().iter().enumerate();
+        let slides = |link| self.carrier(link).is_some_and(|it| it.kind == JointKind::Prismatic);
+        links.filter_map(move |(i, link)| link.name.strip_suffix("_gripper").filter(|_| !slides(i)))
+    }
 }
 
 impl<'a> SerialChain<'a> {

@@ -19,14 +19,12 @@
 mod builtin;
 mod jaw;
 mod kinematics;
-mod measured;
 mod model;
 mod read;
 
 pub use builtin::{BAXTER_SRDF, BAXTER_URDF};
 pub use jaw::Jaw;
 pub use kinematics::{SerialChain, UnknownLink};
-pub use measured::{Finger, MeasuredJoints};
 pub use model::{
     Body, Inertial, Joint, JointKind, Limits, Link, Mimic, Posture, Rgba, Robot, Shape,
 };

@@ -187,7 +187,7 @@ fn jaw_opens_as_its_meshes_do() {
     }
     assert!(gripper.open_m > 0.055 && gripper.open_m < 0.07, "{gripper:?}");
     assert!((gripper.force_n - 20.0).abs() < 0.1, "{gripper:?}");
-    let measured = robot_model::MeasuredJoints::new(robot.description(), &["left_s0"]);
+    let measured = measured_joints::MeasuredJoints::new(robot.description(), &["left_s0"]);
     let [finger] = measured.fingers() else { panic!("{measured:?}") };
     assert_eq!((finger.name.as_str(), finger.limb), ("gripper", 0));
     let half = 50.0;

@@ -1,6 +1,9 @@
-//! The joints of a description under the names by which their values are measured.
+//! The joints of a description under the names by which their values are measured: for recordings and ROS 2, which show
+//! a robot to other programs.
+//!
+//! This crate is pure: no IO, no clock, no threads.
 
-use crate::{Jaw, JointKind, Robot};
+use robot_model::{Jaw, JointKind, Robot};
 
 /// Order of a limb's joints from the shoulder on, by the ends of their names.
 const LIMB_JOINTS: [&str; 7] = ["s0", "s1", "e0", "e1", "w0", "w1", "w2"];
@@ -66,16 +69,6 @@ impl MeasuredJoints {
     /// The fingers of all grippers.
     pub fn fingers(&self) -> &[Finger] {
         &self.fingers
-    }
-}
-
-impl Robot {
-    /// The limbs: what stands before `_gripper` in the names of links. A finger slides, and is the end of no limb,
-    /// whatever its name.
-    pub fn limb_ends(&self) -> impl Iterator<Item = &str> {
-        let links = self.links().iter().enumerate();
-        let slides = |link| self.carrier(link).is_some_and(|it| it.kind == JointKind::Prismatic);
-        links.filter_map(move |(i, link)| link.name.strip_suffix(GRIPPER).filter(|_| !slides(i)))
     }
 }
 
