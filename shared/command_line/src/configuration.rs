@@ -22,14 +22,6 @@ pub fn settings(args: &ConfigArgs) -> Result<Settings, Failure> {
     Ok(settings)
 }
 
-/// Loads the settings of a running group, else those that the command line names.
-pub fn settings_in_force(paths: &GroupPaths, args: &ConfigArgs) -> Result<Settings, Failure> {
-    if !args.is_given() && paths.run().join(config::SNAPSHOT_FILE).is_file() {
-        return Ok(Settings::load_snapshot(&paths.run())?);
-    }
-    settings(args)
-}
-
 /// The folder of the configuration of a whole machine.
 const SYSTEM: &str = "/etc/whichone";
 
@@ -52,17 +44,6 @@ pub fn folder(args: &ConfigArgs) -> Result<PathBuf, Failure> {
             Failure::new(Exit::Config, format!("{what}; {help}"))
         }),
     }
-}
-
-/// As [`folder`], for new files of the user.
-pub fn own_folder(args: &ConfigArgs) -> Result<PathBuf, Failure> {
-    let folder = folder(args)?;
-    if shipped::is_built_in(&folder) {
-        let what = "expected a configuration of your own, found the built-in one only";
-        let help = "`whichone init config` writes one to ./config, which counts from then on; or name a file";
-        return Err(Failure::new(Exit::Config, format!("{what}; help: {help}")));
-    }
-    Ok(folder)
 }
 
 /// The folder of the built-in configuration, which is next to the groups' folders.

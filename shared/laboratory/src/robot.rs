@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use command_line::Outcome;
 use command_line::args::ConfigArgs;
 use command_line::output::Output;
-use command_line::{configuration, shipped};
+use command_line::shipped;
 use diagnostics::Diagnostics;
 use robot_import::{Findings, Gripper, Imported, Kind, Options};
 use safe_files::OutputFolder;
@@ -13,6 +13,7 @@ use serde_json::json;
 use service::exit::{Exit, Failure};
 
 use crate::args::ImportArgs;
+use crate::scene::own_folder;
 
 /// Imports a description.
 pub(super) fn import(args: &ImportArgs, out: &mut Output<'_>) -> Outcome {
@@ -96,7 +97,7 @@ fn options(args: &ImportArgs) -> Result<Options, Failure> {
 
 /// Returns the folder of the configuration.
 fn folder(args: &ImportArgs) -> Result<PathBuf, Failure> {
-    configuration::own_folder(&ConfigArgs { config: args.config.clone(), ..ConfigArgs::default() })
+    own_folder(&ConfigArgs { config: args.config.clone(), ..ConfigArgs::default() })
 }
 
 /// Text of a file.

@@ -5,9 +5,8 @@ use std::path::{Path, PathBuf};
 
 use command_line::Outcome;
 use command_line::args::ConfigArgs;
-use command_line::configuration;
 use command_line::output::Output;
-use command_line::scene_file;
+use command_line::{configuration, scene_file, shipped};
 use config::{Examined, Settings};
 use diagnostics::TextFile;
 use scene_editing::SceneEdit;
@@ -42,9 +41,20 @@ fn check_scene(args: &SceneCheckArgs, out: &mut Output<'_>) -> Outcome {
     check::verdict(load(&args.config, file, &progress)?, &path, false, progress, out)
 }
 
+/// Returns the folder of the configuration for new files of the user.
+pub(crate) fn own_folder(args: &ConfigArgs) -> Result<PathBuf, Failure> {
+    let folder = configuration::folder(args)?;
+    if shipped::is_built_in(&folder) {
+        let what = "expected a configuration of your own, found the built-in one only";
+        let help = "`whichone init config` writes one to ./config, which counts from then on; or name a file";
+        return Err(Failure::new(Exit::Config, format!("{what}; help: {help}")));
+    }
+    Ok(folder)
+}
+
 fn new(args: &SceneNewArgs, out: &mut Output<'_>) -> Outcome {
     let path = if scene_file::is_word(&args.file) {
-        let scenes = configuration::own_folder(&args.config)?.join("scenes");
+        let scenes = own_folder(&args.config)?.join("scenes");
         scenes.join(&args.file).with_extension("toml")
     } else {
         args.file.clone()

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use command_line::Outcome;
 use command_line::configuration;
 use command_line::output::{Output, note, table};
+use config::Settings;
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 use user_study::{Group, Paired, Participant, Report};
@@ -34,7 +35,12 @@ fn folder(paths: &GroupPaths, args: &ReportArgs) -> Result<PathBuf, Failure> {
     if let Some(folder) = &args.folder {
         return Ok(folder.clone());
     }
-    let settings = configuration::settings_in_force(paths, &args.config)?;
+    // Those of a running group, else those that the command line names.
+    let is_running = paths.run().join(config::SNAPSHOT_FILE).is_file();
+    let settings = match is_running && !args.config.is_given() {
+        true => Settings::load_snapshot(&paths.run())?,
+        false => configuration::settings(&args.config)?,
+    };
     let study = settings.part::<user_study::Study>()?;
     Ok(study.data_dir.unwrap_or_else(|| paths.study()))
 }
