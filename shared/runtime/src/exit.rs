@@ -211,35 +211,18 @@ fn signal_name(signal: i32) -> Option<&'static str> {
 mod tests {
     use super::*;
 
+    /// Only permanent exits prevent a restart, and only want of a resource is a shortage.
     #[test]
-    fn only_permanent_exits_prevent_a_restart() {
-        for exit in [ProcessExit::Code(64), ProcessExit::Code(78), ProcessExit::NotStartable] {
-            assert!(exit.is_permanent(), "{exit}");
+    fn exits_are_permanent_or_shortages_or_neither() {
+        use ProcessExit::{Code, NotStartable, NotStarted, Signal};
+        for exit in [Code(64), Code(78), NotStartable] {
+            assert!(exit.is_permanent() && !exit.is_shortage(), "{exit}");
         }
-        for exit in [
-            ProcessExit::Code(0),
-            ProcessExit::Code(1),
-            ProcessExit::Code(75),
-            ProcessExit::Signal(9),
-            ProcessExit::NotStarted,
-        ] {
-            assert!(!exit.is_permanent(), "{exit}");
-        }
-    }
-
-    #[test]
-    fn only_want_of_a_resource_is_a_shortage() {
-        for exit in [ProcessExit::Code(74), ProcessExit::Signal(7), ProcessExit::NotStarted] {
+        for exit in [Code(74), Signal(7), NotStarted] {
             assert!(exit.is_shortage() && !exit.is_permanent(), "{exit}");
         }
-        for exit in [
-            ProcessExit::Code(0),
-            ProcessExit::Code(70),
-            ProcessExit::Code(78),
-            ProcessExit::Signal(9),
-            ProcessExit::NotStartable,
-        ] {
-            assert!(!exit.is_shortage(), "{exit}");
+        for exit in [Code(0), Code(1), Code(70), Code(75), Signal(9)] {
+            assert!(!exit.is_shortage() && !exit.is_permanent(), "{exit}");
         }
     }
 
