@@ -21,7 +21,7 @@ use crate::args::FeedArgs;
 use crate::camera::Camera;
 use crate::printed::{self, Pixels, Printed};
 
-/// Refused detections that are reported, each once.
+/// Kinds of problems that are reported, each once.
 const REPORTED_MAX: usize = 64;
 
 /// One line of `feed`.
@@ -76,24 +76,45 @@ pub(crate) fn feed(
     settings: &Settings,
     out: &mut Output<'_>,
 ) -> Outcome {
-    let mut feed = Feed::new(args, settings).map_err(|error| Failure::new(Exit::Usage, error))?;
+    let feed = Feed::new(args, settings).map_err(|error| Failure::new(Exit::Usage, error))?;
+    let send = |it: Sighting| sightings.send(&it).map_err(|error| error.to_string());
+    send_lines(std::io::stdin().lock(), feed, send, out)
+}
+
+fn send_lines(
+    lines: impl BufRead,
+    mut feed: Feed<'_>,
+    mut send: impl FnMut(Sighting) -> Result<(), String>,
+    out: &mut Output<'_>,
+) -> Outcome {
     let (mut is_right, mut reported) = (true, BTreeSet::new());
-    for (n, line) in std::io::stdin().lock().lines().enumerate() {
+    for (n, line) in lines.lines().enumerate() {
         let line = line.map_err(|error| Failure::new(Exit::NotReached, error.to_string()))?;
         if line.trim().is_empty() {
             continue;
         }
         let mut problems = Vec::new();
-        let sent = feed.sighting(&line, clock::now(), &mut problems);
-        let sent = sent.and_then(|it| sightings.send(&it).map_err(|error| error.to_string()));
+        let sent = feed.sighting(&line, clock::now(), &mut problems).and_then(&mut send);
         is_right &= problems.is_empty() && sent.is_ok();
         // A person who walks past is in every look.
-        problems.retain(|it| reported.len() < REPORTED_MAX && reported.insert(it.clone()));
+        problems.retain(|it| reported.len() < REPORTED_MAX && reported.insert(kind(it)));
         for error in problems.into_iter().chain(sent.err()) {
             out.json(&json!({ "line": n + 1, "error": error }))?;
         }
     }
     Ok(if is_right { Exit::Ok } else { Exit::NotReached })
+}
+
+/// A problem without its numbers, which differ from look to look; those of a label, in backticks, are its name.
+fn kind(problem: &str) -> String {
+    let parts = problem.split('`').enumerate();
+    parts
+        .flat_map(|(n, part)| part.chars().filter(move |c| n % 2 == 1 || !is_of_number(*c)))
+        .collect()
+}
+
+fn is_of_number(c: char) -> bool {
+    c.is_ascii_digit() || "-.".contains(c)
 }
 
 /// The reader of lines, with what they leave out.

@@ -91,6 +91,34 @@ fn boxes_become_objects_in_front_of_the_robot() {
     }
 }
 
+/// What is printed about lines, and how many are sent.
+fn printed_about(args: &FeedArgs, lines: &[u8]) -> (Vec<Json>, usize) {
+    let (settings, mut printed, mut sent) = (settings(), Vec::new(), 0);
+    let send = |_: Sighting| {
+        sent += 1;
+        Ok(())
+    };
+    let feed = Feed::new(args, &settings).unwrap();
+    let exit = send_lines(lines, feed, send, &mut Output::to(&mut printed, false)).unwrap();
+    assert_eq!(exit, Exit::NotReached);
+    let printed = String::from_utf8(printed).unwrap();
+    (printed.lines().map(|line| serde_json::from_str(line).unwrap()).collect(), sent)
+}
+
+#[test]
+fn a_problem_is_said_once_wherever_its_object_is() {
+    let far = |x: f64| {
+        let seen = json!({"classes": {"metal": 1.0}, "xyz": [x, -0.5, 12.25]});
+        json!({ "seen": [seen] }).to_string()
+    };
+    let tag = |n: u64| json!([{"tag_id": n, "pose_t": [0.1, 0.0, 1.0]}]).to_string();
+    let lines = [far(650.0), far(-651.5), tag(7), far(60.0), tag(8), tag(7)].join("\n");
+    let (printed, sent) = printed_about(&args(), lines.as_bytes());
+    let at: Vec<_> = printed.iter().map(|line| line["line"].as_u64().unwrap()).collect();
+    assert_eq!((at, sent), (vec![1, 3, 4, 5], 6), "{printed:?}");
+    assert!(printed[0]["error"].as_str().unwrap().contains("650 -0.5 12.25"), "{printed:?}");
+}
+
 #[test]
 fn tags_and_poses_are_those_of_their_labels() {
     let (_folder, lens) = camera();
