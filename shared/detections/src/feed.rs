@@ -88,13 +88,15 @@ fn send_lines(
     out: &mut Output<'_>,
 ) -> Outcome {
     let (mut is_right, mut reported) = (true, BTreeSet::new());
-    for (n, line) in lines.lines().enumerate() {
+    for (n, line) in lines.split(b'\n').enumerate() {
         let line = line.map_err(|error| Failure::new(Exit::NotReached, error.to_string()))?;
-        if line.trim().is_empty() {
+        if line.trim_ascii().is_empty() {
             continue;
         }
         let mut problems = Vec::new();
-        let sent = feed.sighting(&line, clock::now(), &mut problems).and_then(&mut send);
+        let line = std::str::from_utf8(&line).map_err(|error| error.to_string());
+        let read = line.and_then(|line| feed.sighting(line, clock::now(), &mut problems));
+        let sent = read.and_then(&mut send);
         is_right &= problems.is_empty() && sent.is_ok();
         // A person who walks past is in every look.
         problems.retain(|it| reported.len() < REPORTED_MAX && reported.insert(kind(it)));

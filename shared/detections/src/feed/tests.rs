@@ -120,6 +120,14 @@ fn a_problem_is_said_once_wherever_its_object_is() {
 }
 
 #[test]
+fn a_line_that_is_no_text_is_skipped() {
+    let lines = b"{\"seen\": []}\n\xff\xfe\n \r\n{\"seen\": []}\r\n";
+    let (printed, sent) = printed_about(&args(), lines);
+    assert_eq!((printed.len(), sent, printed[0]["line"].as_u64()), (1, 2, Some(2)), "{printed:?}");
+    assert!(printed[0]["error"].as_str().unwrap().contains("utf-8"), "{printed:?}");
+}
+
+#[test]
 fn tags_and_poses_are_those_of_their_labels() {
     let (_folder, lens) = camera();
     let lens = FeedArgs { classes: vec![("7".to_owned(), "clear".to_owned())], ..lens };
