@@ -58,9 +58,9 @@ pub enum ObjectsVerb {
 #[derive(Clone, Debug, Args)]
 pub struct FeedArgs {
     /// The camera that the pixels are of: its camera_info of ROS, YAML.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", requires = "frame")]
     pub camera: Option<PathBuf>,
-    /// Frame of the camera, of group.perception.frames.
+    /// Frame of the camera, of group.perception.frames; required with --camera.
     #[arg(long, value_name = "NAME", default_value = "base")]
     pub frame: String,
     /// Height in frame `base` at which objects without a depth are, metres.

@@ -1,6 +1,8 @@
 use std::path::Path;
 use std::time::Duration;
 
+use clap::Args;
+
 use super::*;
 
 fn settings() -> Settings {
@@ -103,6 +105,16 @@ fn printed_about(args: &FeedArgs, lines: &[u8]) -> (Vec<Json>, usize) {
     assert_eq!(exit, Exit::NotReached);
     let printed = String::from_utf8(printed).unwrap();
     (printed.lines().map(|line| serde_json::from_str(line).unwrap()).collect(), sent)
+}
+
+#[test]
+fn a_camera_needs_its_frame() {
+    let parse = |words: &[&str]| {
+        let feed = FeedArgs::augment_args(clap::Command::new("feed"));
+        feed.try_get_matches_from([&["feed", "--camera", "head.yaml"], words].concat())
+    };
+    assert!(parse(&[]).unwrap_err().to_string().contains("--frame <NAME>"));
+    assert!(parse(&["--frame", "head"]).is_ok());
 }
 
 #[test]
