@@ -1,6 +1,7 @@
 //! Looks on standard input: each line is read, placed in frame `base`, checked and reported.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::f64::consts::PI;
 use std::io::BufRead;
 
 use command_line::Outcome;
@@ -23,6 +24,8 @@ use crate::printed::{self, Pixels, Printed};
 
 /// Kinds of problems that are reported, each once.
 const REPORTED_MAX: usize = 64;
+/// Variances of a box in pixels: its yaw is unknown.
+const BOX_VARIANCES: [f64; 4] = [0.0, 0.0, 0.0, PI * PI];
 
 /// One line of `feed`.
 #[derive(Deserialize)]
@@ -251,7 +254,7 @@ impl<'a> Feed<'a> {
             (known.map_or(id, |(_, label)| label.clone()), score)
         };
         let classes = labels.into_iter().map(label).collect();
-        Ok(Detection { track, classes, xyz, ..Detection::default() })
+        Ok(Detection { track, classes, xyz, variances: BOX_VARIANCES, ..Detection::default() })
     }
 }
 

@@ -79,6 +79,7 @@ fn boxes_become_objects_in_front_of_the_robot() {
     assert_eq!(problems, [""; 0]);
     assert_at(&used[0], [0.8, 0.1, -0.12]);
     assert_eq!(used[0].classes.len(), 3, "three white bowls: {used:?}");
+    assert!(used[0].variances[3] > 9.0, "a box says nothing of the yaw: {used:?}");
     assert!(read(&args(), &bowl).unwrap_err().contains("--camera"));
     let classes = vec![("51".to_owned(), "metal".to_owned())];
     let by_id = FeedArgs { classes, ..at_height };
