@@ -198,7 +198,7 @@ impl<'a> Feed<'a> {
         problems: &mut Vec<String>,
     ) -> Result<Sighting, String> {
         let at_ns = (now - Span::from_s(self.args.age.as_secs_f64())).ns();
-        let (mut posed, mut seen) = (Vec::new(), Vec::new());
+        let (mut posed, mut seen, mut is_whole) = (Vec::new(), Vec::new(), true);
         for one in printed {
             match one {
                 Printed::Posed(mut posed_one) => {
@@ -207,12 +207,20 @@ impl<'a> Feed<'a> {
                     }
                     posed.push(self.known_tag(posed_one));
                 }
-                Printed::Pixels(pixels) => seen.push(self.placed(pixels)?),
+                Printed::Pixels(pixels) => match self.placed(pixels) {
+                    Ok(detection) => seen.push(detection),
+                    // It may be an object of the table, which this look would miss.
+                    Err(problem) => {
+                        problems.push(problem);
+                        is_whole = false;
+                    }
+                },
             }
         }
         let mut sighting = self.detector.look(random_number(), at_ns, &posed);
         problems.extend(self.detector.take_unused().iter().map(ToString::to_string));
         if let Change::Look(look) = &mut sighting.change {
+            look.whole &= is_whole;
             look.seen.extend(seen);
         }
         Ok(sighting)

@@ -26,6 +26,11 @@ fn args() -> FeedArgs {
 
 /// What a line becomes: the detections in frame `base`, and the problems.
 fn read(args: &FeedArgs, line: &Json) -> Result<(Vec<Detection>, Vec<String>), String> {
+    read_look(args, line).map(|(look, problems)| (look.seen, problems))
+}
+
+/// The look that a line becomes, and the problems.
+fn read_look(args: &FeedArgs, line: &Json) -> Result<(Look, Vec<String>), String> {
     let settings = settings();
     let mut feed = Feed::new(args, &settings)?;
     let mut problems = Vec::new();
@@ -34,7 +39,7 @@ fn read(args: &FeedArgs, line: &Json) -> Result<(Vec<Detection>, Vec<String>), S
     let frames = &settings.group.perception.tracker.frames;
     let (used, _) =
         perception::in_base(frames, &sighting.frame, &look.seen, &settings.scene).unwrap();
-    Ok((used, problems))
+    Ok((Look { seen: used, ..look }, problems))
 }
 
 fn camera() -> (tempfile::TempDir, FeedArgs) {
@@ -54,9 +59,9 @@ fn assert_at(detection: &Detection, xyz: [f64; 3]) {
 fn objects_feed_reads_looks_and_says_what_is_wrong() {
     let line = json!({"age_s": 0.5, "seen": [{"classes": {"white": 0.8, "metal": 0.2},
         "attributes": {"color": {"white": 0.9}}, "xyz": [0.7, 0.1, -0.1]}]});
-    let read_look = look(&line, Time(2_000_000_000)).unwrap();
-    assert_eq!((read_look.source.as_str(), read_look.frame.as_str()), ("script", "base"));
-    let Change::Look(look) = read_look.change else { panic!("a look") };
+    let sighting = look(&line, Time(2_000_000_000)).unwrap();
+    assert_eq!((sighting.source.as_str(), sighting.frame.as_str()), ("script", "base"));
+    let Change::Look(look) = sighting.change else { panic!("a look") };
     assert_eq!((look.at_ns, look.whole, look.seen.len()), (1_500_000_000, true, 1));
     assert_eq!(look.seen[0].attributes[0].1, [("white".to_owned(), 0.9)]);
     let unknown = read(&args(), &json!({"seen": [], "colour": 1})).unwrap_err();
@@ -72,26 +77,34 @@ fn boxes_become_objects_in_front_of_the_robot() {
     let (_folder, at_height) = camera();
     let bowl = json!([{"name": "white bowl", "confidence": 0.8,
         "box": {"x1": 360.0, "y1": 230.0, "x2": 380.0, "y2": 250.0}}]);
-    let help = read(&at_height, &bowl).unwrap_err();
-    assert!(help.contains("--height"), "{help}");
+    let (used, problems) = read(&at_height, &bowl).unwrap();
+    assert!(used.is_empty() && problems[0].contains("--height"), "{problems:?}");
     let at_height = FeedArgs { height: Some(-0.12), ..at_height };
     let (used, problems) = read(&at_height, &bowl).unwrap();
     assert_eq!(problems, [""; 0]);
     assert_at(&used[0], [0.8, 0.1, -0.12]);
     assert_eq!(used[0].classes.len(), 3, "three white bowls: {used:?}");
     assert!(used[0].variances[3] > 9.0, "a box says nothing of the yaw: {used:?}");
-    assert!(read(&args(), &bowl).unwrap_err().contains("--camera"));
+    assert!(read(&args(), &bowl).unwrap().1[0].contains("--camera"));
     let classes = vec![("51".to_owned(), "metal".to_owned())];
     let by_id = FeedArgs { classes, ..at_height };
     let coco = json!([{"category_id": 51, "bbox": [310.0, 230.0, 20.0, 20.0], "score": 0.7, "depth": 0.9}]);
     let (used, _) = read(&by_id, &coco).unwrap();
     assert_at(&used[0], [0.7, 0.1, -0.02]);
     assert_eq!(used[0].classes, [("metal".to_owned(), 0.7)]);
-    for depth in [0.0, -0.9] {
-        let mut coco = coco.clone();
-        coco[0]["depth"] = json!(depth);
-        assert!(read(&by_id, &coco).unwrap_err().contains("`depth` above 0 m"), "{depth}");
-    }
+}
+
+#[test]
+fn a_box_that_cannot_be_placed_leaves_the_others_of_its_line() {
+    let (_folder, args) = camera();
+    let bowl = |depth: f64| {
+        json!({"label": "metal", "score": 0.8, "depth": depth,
+            "box": {"xmin": 310.0, "ymin": 230.0, "xmax": 330.0, "ymax": 250.0}})
+    };
+    let (look, problems) = read_look(&args, &json!([bowl(0.0), bowl(0.9), bowl(-0.5)])).unwrap();
+    assert_eq!((look.whole, look.seen.len(), problems.len()), (false, 1, 2), "{problems:?}");
+    assert!(problems.iter().all(|it| it.contains("`depth` above 0 m")), "{problems:?}");
+    assert!(read_look(&args, &json!([bowl(0.9)])).unwrap().0.whole);
 }
 
 /// What is printed about lines, and how many are sent.
