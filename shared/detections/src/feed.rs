@@ -177,16 +177,18 @@ impl<'a> Feed<'a> {
         problems: &mut Vec<String>,
     ) -> Result<Sighting, String> {
         let json: Json = serde_json::from_str(line).map_err(|error| error.to_string())?;
-        let sighting = match printed::read(&json) {
+        let mut sighting = match printed::read(&json) {
             Some(printed) => self.of_detector(printed?, now, problems)?,
             None => look(&json, now)?,
         };
-        if let Change::Look(look) = &sighting.change {
+        if let Change::Look(look) = &mut sighting.change {
             let frames = &self.settings.group.perception.tracker.frames;
             let checked =
                 perception::in_base(frames, &sighting.frame, &look.seen, &self.settings.scene);
             let (_, refusals) = checked.map_err(|refusal| refusal.to_string())?;
             problems.extend(refusals.iter().map(ToString::to_string));
+            look.whole &= look.seen.iter().all(Detection::is_sound);
+            look.seen.retain(Detection::is_sound);
         }
         Ok(sighting)
     }

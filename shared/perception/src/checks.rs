@@ -20,20 +20,10 @@ pub fn in_base(
     seen: &[Detection],
     file: &Scene,
 ) -> Result<(Vec<Detection>, Vec<Refusal>), Refusal> {
-    let known = frames.iter().find(|known| known.name == frame);
-    if frame != "base" && known.is_none() {
-        return Err(Refusal::Frame(frame.to_owned()));
-    }
-    if !seen.iter().all(Detection::is_sound) {
-        return Err(Refusal::Number);
-    }
+    let known = frame_named(frames, frame)?;
     let (mut used, mut refusals) = (Vec::new(), Vec::new());
     for detection in seen.iter().take(SEEN_MAX) {
-        let mut detection = detection.clone();
-        if let Some(frame) = known {
-            (detection.xyz, detection.yaw) = frame.to_base(detection.xyz, detection.yaw);
-        }
-        match check_reach(detection.xyz).and_then(|()| labels::read(detection, file)) {
+        match placed(known, detection).and_then(|it| labels::read(it, file)) {
             Ok(detection) => used.push(detection),
             Err(refusal) => refusals.push(refusal),
         }
@@ -41,16 +31,20 @@ pub fn in_base(
     Ok((used, refusals))
 }
 
-/// Converts one detection.
-pub(crate) fn one_in_base(
-    frames: &[Frame],
-    frame: &str,
-    one: &Detection,
-    file: &Scene,
-) -> Result<Detection, Refusal> {
-    let (used, refusals) = in_base(frames, frame, std::slice::from_ref(one), file)?;
-    let refusal = refusals.into_iter().next().unwrap_or(Refusal::Number);
-    used.into_iter().next().ok_or(refusal)
+/// The frame of that name; `None` for `base`.
+pub(crate) fn frame_named<'a>(of: &'a [Frame], name: &str) -> Result<Option<&'a Frame>, Refusal> {
+    let known = of.iter().find(|known| known.name == name);
+    let is_known = name == "base" || known.is_some();
+    is_known.then_some(known).ok_or_else(|| Refusal::Frame(name.to_owned()))
+}
+
+/// Converts one detection to frame `base`, but for its labels.
+pub(crate) fn placed(frame: Option<&Frame>, one: &Detection) -> Result<Detection, Refusal> {
+    let mut placed = Some(one).filter(|it| it.is_sound()).cloned().ok_or(Refusal::Number)?;
+    if let Some(frame) = frame {
+        (placed.xyz, placed.yaw) = frame.to_base(placed.xyz, placed.yaw);
+    }
+    check_reach(placed.xyz).map(|()| placed)
 }
 
 /// Checks that an arm may reach a place in frame `base`.

@@ -92,7 +92,7 @@ pub enum Refusal {
     #[error("a look that is {0:.1} s old; help: synchronise the source's clock")]
     Old(f64),
     /// A number is not one.
-    #[error("a position or probability that is not a finite number")]
+    #[error("a position that is not a finite number, or a probability outside of 0 to 1")]
     Number,
     /// The object is unknown.
     #[error("no object `{0}` on the table; help: `whichone objects list` names them")]
@@ -137,7 +137,7 @@ impl Frame {
 }
 
 impl Detection {
-    /// Returns whether every number is finite and no probability negative.
+    /// Returns whether every number is finite and every probability from 0 to 1.
     pub fn is_sound(&self) -> bool {
         let chances = self.attributes.iter().flat_map(|(_, values)| values).chain(&self.classes);
         let mut chances = chances.map(|(_, p)| *p);

@@ -249,13 +249,14 @@ fn old_looks_unknown_frames_and_wrong_numbers_are_refused() {
     let refused = it.report(CAMERA, look(vec![], at.ns())).unwrap_err();
     assert!(matches!(refused, Refusal::Old(_)), "{refused}");
     let wrong = Detection { yaw: f64::NAN, ..seen("white", 0.7, 0.1) };
-    assert_eq!(it.report(CAMERA, look(vec![wrong], 0)), Err(Refusal::Number));
-    let sighting = Sighting {
-        key: 1,
-        source: CAMERA.to_owned(),
-        frame: "tool".to_owned(),
-        change: look(vec![], 0),
-    };
+    for n in 0..33 {
+        it.now = it.now + Span::from_ms(100);
+        let all = [vec![wrong.clone()], vec![seen("white", 0.7, 0.1); usize::from(n < 3)]].concat();
+        assert_eq!(it.report(CAMERA, look(all, it.now.ns())), Err(Refusal::Number));
+    }
+    assert_eq!(it.numbers(), [6], "the other one counts, and such a look misses none");
+    let (source, frame) = (CAMERA.to_owned(), "tool".to_owned());
+    let sighting = Sighting { key: 1, source, frame, change: look(vec![], 0) };
     let refused = it.tracker.take(&sighting, &it.file, &it.hiding, it.now).unwrap_err();
     assert_eq!(refused, Refusal::Frame("tool".to_owned()));
     assert!(refused.to_string().contains("perception.frames"));

@@ -4,7 +4,7 @@ use scene::{ObjectId, Perceived, Scene};
 use vocabulary::Table;
 use vocabulary::time::{Span, Time};
 
-use crate::checks::{check_values, in_base, one_in_base};
+use crate::checks::{check_values, frame_named, in_base, placed};
 use crate::estimate::Estimate;
 use crate::{Change, Detection, Frame, Look, Refusal, Sighting, labels};
 use track::{Candidate, Track};
@@ -103,12 +103,15 @@ impl Tracker {
         match change {
             Change::Look(look) => {
                 let (seen, refusals) = in_base(&self.settings.frames, frame, &look.seen, file)?;
-                self.look(source, &Look { seen, ..*look }, file, hiding, now)?;
+                // A detection with a wrong number may be of any object.
+                let whole = look.whole && !refusals.contains(&Refusal::Number);
+                self.look(source, &Look { seen, whole, ..*look }, file, hiding, now)?;
                 refusals.into_iter().next().map_or(Ok(None), Err)
             }
             Change::Add(detection) => {
                 check_values(detection, file)?;
-                let detection = one_in_base(&self.settings.frames, frame, detection, file)?;
+                let detection = placed(frame_named(&self.settings.frames, frame)?, detection)?;
+                let detection = labels::read(detection, file)?;
                 if detection.classes.is_empty() {
                     return Err(labels::unknown(&detection, file));
                 }
@@ -117,7 +120,7 @@ impl Tracker {
             }
             Change::Move { object, xyz, yaw } => {
                 let of = Detection { xyz: *xyz, yaw: *yaw, ..Detection::default() };
-                let of = one_in_base(&self.settings.frames, frame, &of, file)?;
+                let of = placed(frame_named(&self.settings.frames, frame)?, &of)?;
                 let track = self.named(object)?;
                 track.estimate.put(of.xyz, of.yaw);
                 (track.missed, track.misses) = (Span(0), 0);

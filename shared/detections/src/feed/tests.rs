@@ -122,6 +122,15 @@ fn printed_about(args: &FeedArgs, lines: &[u8]) -> (Vec<Json>, usize) {
 }
 
 #[test]
+fn wrong_numbers_leave_the_others_of_a_look() {
+    let seen = |p: f64| json!({"classes": {"metal": p}, "xyz": [0.7, 0.1, -0.1]});
+    let (look, problems) = read_look(&args(), &json!({"seen": [seen(1.2), seen(0.8)]})).unwrap();
+    assert_eq!((look.whole, look.seen.len(), problems.len()), (false, 1, 1), "{problems:?}");
+    assert_eq!(look.seen[0].classes, [("metal".to_owned(), 0.8)]);
+    assert!(problems[0].contains("outside of 0 to 1"), "{problems:?}");
+}
+
+#[test]
 fn a_camera_needs_its_frame() {
     let parse = |words: &[&str]| {
         let feed = FeedArgs::augment_args(clap::Command::new("feed"));
