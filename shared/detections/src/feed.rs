@@ -203,6 +203,10 @@ impl<'a> Feed<'a> {
         let (mut posed, mut seen, mut is_whole) = (Vec::new(), Vec::new(), true);
         for one in printed {
             match one {
+                Printed::Posed(unnamed) if unnamed.hypotheses.is_empty() => {
+                    problems
+                        .push("a detection without a class; help: `results` with one".to_owned());
+                }
                 Printed::Posed(mut posed_one) => {
                     if posed_one.frame.is_empty() {
                         posed_one.frame.clone_from(&self.frame.name);

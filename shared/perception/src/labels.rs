@@ -20,17 +20,18 @@ pub fn is_known(label: &str, file: &Scene) -> bool {
 /// Reads the labels of a detection. Values that it states directly come before those of a label.
 ///
 /// # Errors
-/// Its likeliest label is not known: the others are no substitute for it.
-pub(crate) fn read(detection: Detection, file: &Scene) -> Result<Detection, Refusal> {
+/// It has no label, or its likeliest one is not known: the others are no substitute for it.
+pub(crate) fn read(mut detection: Detection, file: &Scene) -> Result<Detection, Refusal> {
+    detection.classes.retain(|(_, p)| *p > 0.0);
     let labels = &detection.classes;
-    if likeliest(labels).is_some_and(|label| !is_known(label, file)) {
+    if likeliest(labels).is_none_or(|label| !is_known(label, file)) {
         return Err(unknown(&detection, file));
     }
     if labels.iter().all(|(label, _)| file.object_named(label).is_some()) {
         return Ok(detection);
     }
     let mut read = Detection { classes: Vec::new(), ..detection.clone() };
-    for (label, p) in labels.iter().filter(|(_, p)| *p > 0.0) {
+    for (label, p) in labels {
         if file.object_named(label).is_some() {
             add(&mut read.classes, label, *p);
             continue;
@@ -55,7 +56,7 @@ pub(crate) fn read(detection: Detection, file: &Scene) -> Result<Detection, Refu
 }
 
 /// The refusal of a detection without a known label.
-pub(crate) fn unknown(detection: &Detection, file: &Scene) -> Refusal {
+fn unknown(detection: &Detection, file: &Scene) -> Refusal {
     let known: Vec<&str> = file.objects().iter().map(|object| object.name.as_str()).collect();
     let labels: Vec<&str> = detection.classes.iter().map(|(label, _)| label.as_str()).collect();
     Refusal::NoClass(labels.join("`, `"), known.join(", "))

@@ -111,11 +111,7 @@ impl Tracker {
             Change::Add(detection) => {
                 check_values(detection, file)?;
                 let detection = placed(frame_named(&self.settings.frames, frame)?, detection)?;
-                let detection = labels::read(detection, file)?;
-                if detection.classes.is_empty() {
-                    return Err(labels::unknown(&detection, file));
-                }
-                let estimate = Estimate::stated(&detection);
+                let estimate = Estimate::stated(&labels::read(detection, file)?);
                 self.appear(estimate, None, now).map(Some).ok_or(Refusal::Full(self.tracks.len()))
             }
             Change::Move { object, xyz, yaw } => {

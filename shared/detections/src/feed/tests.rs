@@ -131,6 +131,21 @@ fn wrong_numbers_leave_the_others_of_a_look() {
 }
 
 #[test]
+fn a_detection_without_a_class_is_said_and_is_no_object() {
+    let (_folder, lens) = camera();
+    let place = json!({"position": {"x": 0.7, "y": 0.1, "z": 0.0},
+        "orientation": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}});
+    let pixel = json!({"position": {"x": 320.0, "y": 240.0}});
+    let solid = json!({"results": [], "bbox": {"center": place}});
+    let flat = json!({"results": [], "depth": 0.9, "bbox": {"center": pixel, "size_x": 20.0}});
+    for (detection, reason) in [(solid, "without a class"), (flat, "no object ``")] {
+        let line = json!({"header": {"frame_id": "base"}, "detections": [detection]});
+        let (used, problems) = read(&lens, &line).unwrap();
+        assert!(used.is_empty() && problems[0].contains(reason), "{problems:?}");
+    }
+}
+
+#[test]
 fn a_camera_needs_its_frame() {
     let parse = |words: &[&str]| {
         let feed = FeedArgs::augment_args(clap::Command::new("feed"));

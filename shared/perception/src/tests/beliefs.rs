@@ -98,6 +98,12 @@ fn labels_are_read_by_the_scenes_words() {
         let refused = it.report(CAMERA, Change::Look(look)).unwrap_err().to_string();
         assert!(refused.contains(unknown) && refused.contains("white2, white3"), "{refused}");
     }
+    for classes in [vec![], vec![("white".to_owned(), 0.0)]] {
+        let seen = vec![Detection { classes, ..seen("white", 0.7, 0.1) }];
+        let look = Look { seen, ..Look::default() };
+        let refused = Scenery::new().report(CAMERA, Change::Look(look)).unwrap_err();
+        assert!(matches!(refused, Refusal::NoClass(..)), "{refused}");
+    }
 }
 
 #[test]
