@@ -171,21 +171,28 @@ impl Detector {
     /// The frame is not known.
     fn detection(&mut self, reported: &Reported) -> Result<Option<Detection>, String> {
         let mut known: Vec<(Label, &Hypothesis)> = Vec::new();
+        let mut unknown_score = 0.0_f64;
         for hypothesis in &reported.hypotheses {
             match self.label(&hypothesis.id) {
                 Some(label) if hypothesis.score > 0.0 => known.push((label, hypothesis)),
                 Some(_) => {}
-                None => self.note_unknown(&hypothesis.id),
+                None => {
+                    self.note_unknown(&hypothesis.id);
+                    unknown_score = unknown_score.max(hypothesis.score);
+                }
             }
         }
+        let classes = classes(&known);
+        // Less likely objects are no substitute for an unknown one.
+        let is_likeliest = classes.iter().any(|(_, p)| *p >= unknown_score.min(1.0));
         let best = known.iter().rev().max_by(|a, b| a.1.score.total_cmp(&b.1.score));
-        let Some((label, hypothesis)) = best else { return Ok(None) };
+        let Some((label, hypothesis)) = best.filter(|_| is_likeliest) else { return Ok(None) };
         let frame = self.frame(&reported.frame)?;
         let stated = |pose: &Pose| pose.position != [0.0; 3];
         let pose = Some(hypothesis.pose).filter(stated).or(reported.center.filter(stated));
         let detection = pose.map(|pose| Detection {
             track: reported.track.clone(),
-            classes: classes(&known),
+            classes,
             ..placed(&frame, &pose, label, &hypothesis.covariance)
         });
         let detection = detection.filter(Detection::is_sound);
