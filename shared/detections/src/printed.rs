@@ -39,8 +39,26 @@ pub(crate) struct Pixels {
 /// Reads a line; `None` if no detector prints that.
 ///
 /// # Errors
-/// A key is missing, or of another type.
+/// A key is missing or of another type, or boxes are not in pixels.
 pub(crate) fn read(line: &Json) -> Option<Result<Vec<Printed>, String>> {
+    form(line).map(|printed| printed.and_then(in_pixels))
+}
+
+/// Refuses boxes that are fractions of the image.
+fn in_pixels(printed: Vec<Printed>) -> Result<Vec<Printed>, String> {
+    let mut centers = printed.iter().filter_map(|one| match one {
+        Printed::Pixels(pixels) => Some(pixels.center),
+        Printed::Posed(_) => None,
+    });
+    let is_fraction = |[x, y]: [f64; 2]| x <= 1.0 && y <= 1.0;
+    if centers.next().is_some_and(is_fraction) && centers.all(is_fraction) {
+        return Err("boxes: pixels expected, found fractions; help: multiply by the image's size"
+            .to_owned());
+    }
+    Ok(printed)
+}
+
+fn form(line: &Json) -> Option<Result<Vec<Printed>, String>> {
     let first = line.as_array().map(|list| list.first().unwrap_or(&Json::Null));
     let has = |of: &Json, key: &str| of.get(key).is_some();
     match first {
@@ -404,6 +422,9 @@ mod tests {
         assert_eq!(read(&json!({"seen": []})), None);
         assert_eq!(read(&json!([{"cup": 1}])), None);
         assert_eq!(read(&json!([])), Some(Ok(Vec::new())));
+        let fractions =
+            json!({"scores": [0.8], "boxes": [[0.1, 0.2, 0.3, 0.4]], "labels": ["cup"]});
+        assert!(read(&fractions).unwrap().unwrap_err().contains("found fractions"));
         let error = read(&json!([{"box": {"x1": 0, "y1": 0, "x2": 1, "y2": 1}, "name": "cup"}]))
             .unwrap()
             .unwrap_err();
