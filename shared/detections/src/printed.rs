@@ -62,7 +62,7 @@ fn form(line: &Json) -> Option<Result<Vec<Printed>, String>> {
     let first = line.as_array().map(|list| list.first().unwrap_or(&Json::Null));
     let has = |of: &Json, key: &str| of.get(key).is_some();
     match first {
-        Some(Json::Null) => Some(Ok(Vec::new())),
+        Some(Json::Null) if line.as_array().is_some_and(Vec::is_empty) => Some(Ok(Vec::new())),
         Some(first) if has(first, "tag_id") => Some(each(line, tag)),
         Some(first) if has(first, "category_id") => Some(each(line, coco)),
         Some(first) if first["box"].get("xmin").is_some() => Some(each(line, zero_shot)),
@@ -422,6 +422,7 @@ mod tests {
         assert_eq!(read(&json!({"seen": []})), None);
         assert_eq!(read(&json!([{"cup": 1}])), None);
         assert_eq!(read(&json!([])), Some(Ok(Vec::new())));
+        assert_eq!(read(&json!([null, {"tag_id": 7}])), None, "not an empty look");
         let fractions =
             json!({"scores": [0.8], "boxes": [[0.1, 0.2, 0.3, 0.4]], "labels": ["cup"]});
         assert!(read(&fractions).unwrap().unwrap_err().contains("found fractions"));
