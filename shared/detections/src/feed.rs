@@ -199,7 +199,7 @@ impl<'a> Feed<'a> {
         now: Time,
         problems: &mut Vec<String>,
     ) -> Result<Sighting, String> {
-        let at_ns = (now - Span::from_s(self.args.age.as_secs_f64())).ns();
+        let at_ns = before(now, self.args.age.as_secs_f64());
         let (mut posed, mut seen, mut is_whole) = (Vec::new(), Vec::new(), true);
         for one in printed {
             match one {
@@ -272,6 +272,11 @@ impl<'a> Feed<'a> {
     }
 }
 
+/// Time of a look of an age in seconds, nanoseconds; not 0, which stands for now.
+fn before(now: Time, age_s: f64) -> u64 {
+    (now - Span::from_s(age_s)).ns().max(1)
+}
+
 fn look(line: &Json, now: Time) -> Result<Sighting, String> {
     let line = FeedLine::deserialize(line).map_err(|error| error.to_string())?;
     let seen = line.seen.into_iter().map(|it| Detection {
@@ -284,7 +289,7 @@ fn look(line: &Json, now: Time) -> Result<Sighting, String> {
         yaw: it.yaw,
         variances: it.variances,
     });
-    let at_ns = (now - Span::from_s(line.age_s)).ns();
+    let at_ns = before(now, line.age_s);
     let look = Look { at_ns, whole: line.whole, seen: seen.collect() };
     let (source, frame) = (line.source, line.frame);
     Ok(Sighting { key: random_number(), source, frame, change: Change::Look(look) })

@@ -64,6 +64,8 @@ fn objects_feed_reads_looks_and_says_what_is_wrong() {
     let Change::Look(look) = sighting.change else { panic!("a look") };
     assert_eq!((look.at_ns, look.whole, look.seen.len()), (1_500_000_000, true, 1));
     assert_eq!(look.seen[0].attributes[0].1, [("white".to_owned(), 0.9)]);
+    let (before_start, _) = read_look(&args(), &json!({"age_s": 1e6, "seen": []})).unwrap();
+    assert_eq!(before_start.at_ns, 1, "old: 0 stands for now");
     let unknown = read(&args(), &json!({"seen": [], "colour": 1})).unwrap_err();
     assert!(unknown.contains("colour"), "{unknown}");
     assert!(read(&args(), &json!("nothing")).is_err());
