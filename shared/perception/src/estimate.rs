@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use scene::Scene;
+use scene::{Scene, likeliest};
 
 use crate::Detection;
 use crate::names::{Chances, Names};
@@ -45,7 +45,7 @@ pub struct Estimate {
 struct Values {
     attribute: String,
     names: Names,
-    /// Whether looks have shown them: then looks that do not show them are those of the class.
+    /// Whether looks have shown others than stated: then looks without them show those of the class.
     is_seen: bool,
 }
 
@@ -104,17 +104,27 @@ impl Estimate {
         let is_full = self.named.is_full();
         self.named.fade(is_full);
         self.named.see(&detection.classes, 1.0);
-        self.values.iter_mut().filter(|it| it.is_seen).for_each(|it| it.names.fade(is_full));
-        let is_known = |(name, _): &&(String, Chances)| file.attribute_named(name).is_some();
-        for (attribute, seen) in detection.attributes.iter().filter(is_known) {
+        for it in &mut self.values {
+            it.names.fade(if it.is_seen { is_full } else { it.names.is_full() });
+        }
+        for (attribute, seen) in &detection.attributes {
+            let Some(k) = file.attribute_named(attribute) else { continue };
+            let mut seen = seen.clone();
+            seen.retain(|(value, _)| file.value_named(k, value).is_some());
+            let Some(shown) = likeliest(&seen) else { continue };
             let at = self.values.iter().position(|it| it.attribute == *attribute);
             let at = at.unwrap_or_else(|| {
                 let (attribute, names) = (attribute.clone(), Names::default());
                 self.values.push(Values { attribute, names, is_seen: true });
                 self.values.len() - 1
             });
-            self.values[at].is_seen = true;
-            self.values[at].names.see(seen, 1.0);
+            let stated = self.attributes.get(at).and_then(|(_, chances)| likeliest(chances));
+            let values = &mut self.values[at];
+            // Looks without the value say nothing against a person with whom a look agrees.
+            if !values.is_seen && stated != Some(shown) {
+                (values.is_seen, values.names.looks) = (true, self.named.looks - 1.0);
+            }
+            values.names.see(&seen, 1.0);
         }
         self.classes = self.named.chances(file.objects().len());
         let of = |it: &Values| (it.attribute.clone(), self.chances_of(it, file));

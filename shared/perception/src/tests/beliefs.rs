@@ -74,6 +74,16 @@ fn what_a_person_states_is_kept_beside_looks_that_do_not_show_it() {
     it.report("hand", Change::Add(Detection { attributes, ..seen("metal", 0.7, 0.1) })).unwrap();
     it.looks(60, &[seen("metal", 0.7, 0.1)]);
     assert!((belief(&it, "color", "white") - 0.3).abs() < 0.01, "{:?}", it.tracker.objects());
+    // Nor does a look that agrees make the others count against it; looks that do not agree do.
+    let mut it = Scenery::new();
+    it.report("hand", Change::Add(colored("metal", "white", 1.0))).unwrap();
+    for times in [60, 20] {
+        it.looks(times, &[seen("metal", 0.7, 0.1)]);
+        it.look(&[colored("metal", "white", 0.9)]);
+        assert!(belief(&it, "color", "white") > 0.9, "{:?}", it.tracker.objects());
+    }
+    it.looks(60, &[colored("metal", "clear", 0.9)]);
+    assert!(belief(&it, "color", "clear") > 0.9, "{:?}", it.tracker.objects());
 }
 
 #[test]
