@@ -45,12 +45,15 @@ impl Perceived {
         }
     }
 
-    fn refuse(&mut self, source: &str, refusal: &Refusal) {
-        if self.refused == 0 || self.refusal != refusal.to_string() {
+    /// Counts a refusal. Returns whether it differs from the latest one.
+    fn refuse(&mut self, source: &str, refusal: &Refusal) -> bool {
+        let latest = std::mem::replace(&mut self.refusal, format!("{source}: {refusal}"));
+        self.refused += 1;
+        let is_new = self.refusal != latest;
+        if is_new {
             tracing::warn!(source, %refusal, "a report of objects is refused");
         }
-        self.refused += 1;
-        self.refusal = format!("{source}: {refusal}");
+        is_new
     }
 
     fn answer(&mut self, key: u64, outcome: Result<ObjectId, &Refusal>) {
@@ -132,17 +135,15 @@ impl PolicyNode {
             true => Err(Refusal::Fetching),
             false => tracker.take(sighting, self.manager.scene_file(), &perceived.hiding, now),
         };
-        let is_refused = taken.is_err();
-        if let Err(refusal) = &taken {
-            perceived.refuse(&sighting.source, refusal);
-        }
+        let refusal = taken.as_ref().err();
+        let is_new = refusal.is_some_and(|refusal| perceived.refuse(&sighting.source, refusal));
         if let (true, Some(outcome)) = (is_by_hand, taken.as_ref().copied().transpose()) {
             perceived.answer(sighting.key, outcome);
         }
         let changed = taken.unwrap_or_default();
         // Detections of a look may be used beside one that is refused.
         self.step_table(changed.map(|object| (sighting.key, object)), now, fx);
-        if is_by_hand || is_refused {
+        if is_by_hand || is_new {
             self.send_table(now, fx);
         } else {
             self.send_changed_table(now, fx);

@@ -292,7 +292,9 @@ fn labels_that_the_scene_lacks_are_refused_with_its_names() {
     assert_eq!(bench.objects(), [""; 0]);
     assert!(bench.table.refusal.contains("`a red block`"), "{}", bench.table.refusal);
     assert!(bench.table.refusal.contains("white2"), "{}", bench.table.refusal);
-    assert_eq!(bench.table.refused, 10);
+    assert_eq!(bench.table.refused, 1, "the same reason is published once");
+    bench.looks(1, &[seen("a blue block", 0.3)]);
+    assert_eq!(bench.table.refused, 11, "another reason is published");
     bench.looks(3, &[seen("a red block", 0.0), seen("a big metal bowl", 0.3)]);
     assert_eq!(bench.objects(), ["metal2-6"]);
 }
