@@ -49,11 +49,10 @@ impl Perceived {
     fn refuse(&mut self, source: &str, refusal: &Refusal) -> bool {
         let latest = std::mem::replace(&mut self.refusal, format!("{source}: {refusal}"));
         self.refused += 1;
-        let is_new = self.refusal != latest;
-        if is_new {
+        if self.refusal != latest {
             tracing::warn!(source, %refusal, "a report of objects is refused");
         }
-        is_new
+        self.refusal != latest
     }
 
     fn answer(&mut self, key: u64, outcome: Result<ObjectId, &Refusal>) {
@@ -99,10 +98,8 @@ impl PolicyNode {
     /// Notes which object the arm grasps or carries.
     pub(crate) fn note_handling(&mut self, status: &ArmStatus) {
         let Some(perceived) = &mut self.perceived else { return };
-        let handles = matches!(
-            status.phase.get(),
-            PickPhase::Closing | PickPhase::Holding | PickPhase::Returning
-        );
+        let handling = [PickPhase::Closing, PickPhase::Holding, PickPhase::Returning];
+        let handles = handling.contains(&status.phase.get());
         let object = u16::try_from(status.object).ok().map(ObjectId);
         perceived.hiding.handled = object.filter(|_| handles);
     }
@@ -170,12 +167,8 @@ impl PolicyNode {
             return;
         }
         tracker.forget_gone();
-        let mut next = Table {
-            version: table.version + 1,
-            next: tracker.next(),
-            objects,
-            edits: table.edits.clone(),
-        };
+        let (version, edits) = (table.version + 1, table.edits.clone());
+        let mut next = Table { version, next: tracker.next(), objects, edits };
         if let Some((key, object)) = edit {
             next.note(key, object);
         }
@@ -189,11 +182,9 @@ impl PolicyNode {
         let (Some(perceived), Some(table)) = (&mut self.perceived, &self.state.table) else {
             return;
         };
-        let settings = &perceived.settings;
-        let file = self.manager.scene_file();
-        let tracker = perceived
-            .tracker
-            .get_or_insert_with(|| Tracker::new(settings.clone(), table, file, now));
+        let (settings, file) = (&perceived.settings, self.manager.scene_file());
+        let new = || Tracker::new(settings.clone(), table, file, now);
+        let tracker = perceived.tracker.get_or_insert_with(new);
         table.objects.iter().for_each(|object| tracker.hand_over(object.number, object.taken));
     }
 

@@ -93,10 +93,8 @@ fn values(label: &str, file: &Scene) -> Option<Vec<(AttributeId, ValueId)>> {
             continue;
         };
         found.extend(value.filter(|value| !found.contains(value)));
-        let is_place = |(k, v): (AttributeId, ValueId)| {
-            file.attributes()[k.index()].values[v.index()].role() == Role::Place
-        };
-        is_named |= !value.is_some_and(is_place);
+        let of = |(k, v): (AttributeId, ValueId)| &file.attributes()[k.index()].values[v.index()];
+        is_named |= value.is_none_or(|value| of(value).role() != Role::Place);
         rest = &rest[phrase.len()..];
     }
     is_named.then_some(found)

@@ -85,9 +85,8 @@ impl Names {
     /// Given `s`, the probabilities are those that looks with `s` stated on average.
     pub(crate) fn chances(&self, count: usize) -> Chances {
         let weights: Vec<f64> = self.taken.iter().map(|taken| sum(&taken.stated)).collect();
-        let (all, most) = weights
-            .iter()
-            .fold((0.0, 0.0), |(all, most): (f64, f64), weight| (all + weight, most.max(*weight)));
+        let all: f64 = weights.iter().sum();
+        let most = weights.iter().copied().fold(0.0, f64::max);
         let independent = 1.0 / (1.0 + COMMON * (all - 1.0).max(0.0));
         let noise =
             (PRIOR[1] + independent * (all - most)) / (PRIOR[0] + PRIOR[1] + independent * all);

@@ -134,11 +134,8 @@ impl Tracker {
     /// Returns the objects, each as it was last reported: places that differ by less than the
     /// settings' step are the same.
     pub fn objects(&self) -> Vec<Perceived> {
-        self.tracks
-            .iter()
-            .filter(|track| !self.is_gone(track))
-            .map(|it| it.object.clone())
-            .collect()
+        let there = self.tracks.iter().filter(|track| !self.is_gone(track));
+        there.map(|it| it.object.clone()).collect()
     }
 
     /// Returns the least number that no object has had.

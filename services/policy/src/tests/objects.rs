@@ -274,11 +274,8 @@ fn objects_whose_values_are_in_doubt_are_asked_about_by_place() {
         let said = bench.says(&["metallic"]);
         bench.hear(&said);
         assert_eq!(bench.node.state().act.kind, ActKind::Ask, "{:?}", belief(bench.node.state()));
-        assert!(
-            bench.text().contains("left") || bench.text().contains("middle"),
-            "{}",
-            bench.text()
-        );
+        let text = bench.text();
+        assert!(text.contains("left") || text.contains("middle"), "{text}");
         bench.check();
     }
 }

@@ -146,14 +146,10 @@ impl Tracker {
         let known = known.filter_map(|n| Some((near(&self.candidates[n])?, n)));
         let Some((_, n)) = known.min_by(|a, b| a.0.total_cmp(&b.0)) else {
             if self.candidates.len() < CANDIDATES_MAX {
-                self.candidates.push(Candidate {
-                    estimate: Estimate::new(detection, file),
-                    track: named(source, detection),
-                    source: source.to_owned(),
-                    since: at,
-                    seen: at,
-                    beside: shown.clone(),
-                });
+                let (estimate, track) = (Estimate::new(detection, file), named(source, detection));
+                let (source, since, seen, beside) = (source.to_owned(), at, at, shown.clone());
+                let new = Candidate { estimate, track, source, since, seen, beside };
+                self.candidates.push(new);
             }
             if self.settings.appear > 1 {
                 return;
@@ -185,15 +181,12 @@ impl Tracker {
                 && it.object.seen_by.contains(&source)
                 && likeliest(&it.estimate.classes) == class.as_deref()
         });
-        let moved = match (lost.next(), lost.next()) {
-            (Some(only), None) => Some(only),
-            _ => None,
-        };
+        let (first, second) = (lost.next(), lost.next());
+        let moved = first.filter(|_| second.is_none());
         let number = match moved {
             Some(moved) => {
                 moved.estimate.move_to(&estimate);
-                (moved.seen, moved.stood) = (at, at);
-                (moved.missed, moved.misses) = (Span(0), 0);
+                (moved.seen, moved.stood, moved.missed, moved.misses) = (at, at, Span(0), 0);
                 moved.track = track;
                 moved.report(self.settings.moved_m);
                 Some(moved.object.number)
