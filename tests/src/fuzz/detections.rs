@@ -45,7 +45,8 @@ pub(super) fn seeds() -> Vec<Vec<u8>> {
         r#"[{"label": "metal", "score": 0.5, "box": {"xmin": 360, "ymin": 230, "xmax": 380, "ymax": 250}}]"#,
         r#"{"scores": [0.8], "boxes": [[100.0, 50.0, 120.0, 90.0]], "labels": ["a clear bowl"], "depths": [0.9]}"#,
         r#"{"header": {"frame_id": "base"}, "detections": [{"results": [{"hypothesis": {"class_id": "white",
-            "score": 0.8}}], "bbox": {"center": {"position": {"x": 0.7, "y": 0.1, "z": 0.0}}}}]}"#,
+            "score": 0.8}}], "bbox": {"center": {"position": {"x": 0.7, "y": 0.1, "z": 0.0},
+            "orientation": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}}}}]}"#,
         r#"[{"tag_family": "tag36h11", "tag_id": 7, "pose_t": [[0.1], [0.0], [1.0]],
             "pose_R": [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]]}]"#,
     ];
