@@ -163,7 +163,11 @@ fn is_stopped(group: &Group, stopped: bool) {
 fn request_by_topic_ends_in_a_delivered_object(implementation: Implementation) {
     let (mut peer, group) = implementation.start(&[]);
     peer.tell("say the bowl");
-    group.wait_for_decision("ask");
+    let asked = peer.wait_for("a question that waits for its answer", |seen| {
+        seen["state"]["dialogue"]["expects_answer"] == true
+    });
+    let options = asked["state"]["dialogue"]["options"].as_array().unwrap();
+    assert!(options.len() > 2 && options.last().unwrap() == "I don't know", "{options:?}");
     let outcome = group.await_pick(Some("white2"));
     assert_eq!(outcome["outcome"], "delivered", "{outcome}");
     assert_eq!(outcome["object"], "white2", "{outcome}");

@@ -9,6 +9,7 @@ use service::status::{Actual, GroupStatus, ServiceState};
 use service::view::{Latest, QuestionView};
 use std::collections::BTreeMap;
 use vocabulary::Outcome;
+use vocabulary::named::options;
 
 /// The robot in a word; of several that hold, the first.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -151,6 +152,7 @@ impl State {
             Self { state, why, arm: arm.map(|arm| arm_state(scene, arm)), ..Self::default() };
         let Some(view) = view else { return nothing };
         let expects_answer = expects_answer(view);
+        let fitting = expects_answer.then(|| options(scene, view.question)).into_iter().flatten();
         let names = scene.objects().iter().map(|object| object.name.clone());
         Self {
             interaction: view.interaction,
@@ -160,7 +162,7 @@ impl State {
             prompt: view.prompt,
             expects_answer,
             question: QuestionView::new(scene, view.question).filter(|_| expects_answer),
-            options: if expects_answer { options(scene, view.question) } else { Vec::new() },
+            options: fitting.map(str::to_owned).collect(),
             questions: view.questions,
             belief: names.zip(view.belief.iter().copied()).collect(),
             ended: view.last.as_ref().map(|last| EndedState {
@@ -307,26 +309,6 @@ fn arm_state(scene: &Scene, arm: &ArmStatus) -> ArmState {
         stop: arm.stop,
         remaining_s: arm.remaining_s,
     }
-}
-
-/// Returns answers that fit a question.
-fn options(scene: &Scene, question: Question) -> Vec<String> {
-    const UNKNOWN: &str = "I don't know";
-    let values = |attribute: scene::AttributeId| &scene.attributes()[attribute.index()].values;
-    let mut options: Vec<String> = match question {
-        _ if !scene.contains(question) => return Vec::new(),
-        Question::None => return vec!["yes".into(), "no".into()],
-        Question::Point(_) | Question::Attribute(..) => vec!["yes".into(), "no".into()],
-        Question::Which(attribute) => {
-            values(attribute).iter().map(|value| value.spoken.clone()).collect()
-        }
-        Question::Choice(attribute, options) => {
-            let spoken = |value: &scene::ValueId| values(attribute)[value.index()].spoken.clone();
-            options.values().iter().map(spoken).collect()
-        }
-    };
-    options.push(UNKNOWN.to_owned());
-    options
 }
 
 #[cfg(test)]

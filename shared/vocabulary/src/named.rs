@@ -37,6 +37,25 @@ pub enum QuestionView<Name> {
     },
 }
 
+/// Returns answers that fit a question; none where it is not of this scene.
+pub fn options(scene: &Scene, question: Question) -> Vec<&str> {
+    let attributes = scene.attributes();
+    let mut options: Vec<&str> = match question {
+        _ if !scene.contains(question) => return Vec::new(),
+        Question::None => return vec!["yes", "no"],
+        Question::Point(_) | Question::Attribute(..) => vec!["yes", "no"],
+        Question::Which(k) => {
+            attributes[k.index()].values.iter().map(|value| value.spoken.as_str()).collect()
+        }
+        Question::Choice(k, options) => {
+            let values = &attributes[k.index()].values;
+            options.values().iter().map(|v| values[v.index()].spoken.as_str()).collect()
+        }
+    };
+    options.push("I don't know");
+    options
+}
+
 /// An action, in the scene's names.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(tag = "type", rename_all = "snake_case")]

@@ -2,7 +2,7 @@ use messages::{ActKind, Delivery, Outcome, PolicyView, Presented};
 use scene::Scene;
 use serde::ser::{Serialize, Serializer};
 use vocabulary::Attributed;
-use vocabulary::named::{ActionView, QuestionView};
+use vocabulary::named::{ActionView, QuestionView, options};
 
 use super::ms;
 use crate::Time;
@@ -29,6 +29,8 @@ pub struct DialogueView<'a> {
     pub question: Option<QuestionView<&'a str>>,
     /// Whether that question has been put to its end and waits for an answer.
     pub expects_answer: bool,
+    /// Answers that fit it, while one is expected.
+    pub options: Vec<&'a str>,
     /// Prompt of the robot's latest line, 0 for none.
     pub prompt: u64,
     /// The robot's latest line.
@@ -101,6 +103,7 @@ impl<'a> DialogueView<'a> {
     /// Makes the view of the policy's publication; objects by their names in `scene`.
     pub fn new(scene: &'a Scene, view: &'a PolicyView, presented: &Presented) -> Self {
         let names = scene.objects().iter().map(|object| object.name.as_str());
+        let expects_answer = view.open_question(presented).is_some();
         Self {
             interaction: view.interaction,
             from: &view.from,
@@ -110,7 +113,8 @@ impl<'a> DialogueView<'a> {
             person: view.person.map(|(p_l, epsilon)| UserView { p_l, epsilon }),
             decision: view.decision,
             question: QuestionView::new(scene, view.question),
-            expects_answer: view.open_question(presented).is_some(),
+            expects_answer,
+            options: if expects_answer { options(scene, view.question) } else { Vec::new() },
             prompt: view.prompt,
             text: &view.text,
             value: view.value,
