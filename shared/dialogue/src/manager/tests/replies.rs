@@ -1,7 +1,9 @@
 //! Every text that is typed gets an answer, and no question comes twice in the same words. The answers are in
 //! `conversations.txt`.
 
-use super::fixture::{answer, at, first, heard, manager, remark, reply, text, typed, words};
+use super::fixture::{
+    answer, at, belief, first, heard, manager, remark, reply, text, typed, words,
+};
 use crate::manager::{Cause, Manager, State};
 use scene::{Intent, Reading, Response};
 use vocabulary::ActKind;
@@ -96,6 +98,20 @@ fn talk_that_is_not_meant_for_the_robot_stays_unanswered() {
         said.typed = false;
         let after = manager.next(&state, &Cause::Utterance(said), at(seq));
         assert_eq!(after.act, state.act);
+    }
+}
+
+/// Recognisers write "Thank you." and "you" into silence.
+#[test]
+fn thanks_and_words_without_a_meaning_leave_the_question_and_the_belief() {
+    let mut manager = manager();
+    let asking = first(&mut manager, words(&["white"]));
+    for it in [Intent::Thank, Intent::None] {
+        let after = remark(&mut manager, &asking, intent(it));
+        assert_eq!(after.act.question, asking.act.question, "{it:?}");
+        assert_eq!(belief(&after), belief(&asking), "{it:?}");
+        let answered = reply(&mut manager, &asking, intent(it));
+        assert_eq!(belief(&answered), belief(&asking), "{it:?}");
     }
 }
 
