@@ -7,7 +7,7 @@ from homeassistant.components.conversation import async_get_chat_log
 from homeassistant.core import Context
 from homeassistant.helpers.chat_session import async_get_chat_session
 
-from custom_components.whichone import api, const
+from custom_components.whichone import api, const, echo
 from custom_components.whichone.stops import is_stop
 from custom_components.whichone.whose import conversation_of, name_of
 from fake_robot import reply_of
@@ -33,6 +33,40 @@ async def test_microphone_follows_what_the_robot_expects_and_no_question_mark(co
     monkeypatch.setitem(reply_of("fetching"), "text", "I will get it, all right?")
     assert (await say(core, "get me the bowl")).continue_conversation
     assert not (await say(core, "yes")).continue_conversation
+
+
+async def test_own_question_that_a_satellite_hears_is_no_answer(core, fake, entry, monkeypatch):
+    fake.script = ["question"] * 4
+    asks = reply_of("question")["text"]
+    await say(core, "get me the bowl", device="hall")
+    heard = await say(core, asks, device="hall")
+    assert spoken(heard) == ""
+    assert heard.continue_conversation
+    assert len(fake.said) == 1
+    # Typed, and later, the words are the person's.
+    typed = await say(core, "get me the bowl")
+    assert spoken(await say(core, asks, typed.conversation_id)) == asks
+    monkeypatch.setattr(echo, "ECHO_S", -1.0)
+    assert spoken(await say(core, asks, device="hall")) == asks
+    assert len(fake.said) == 4
+
+
+@pytest.mark.parametrize(
+    ("heard", "line", "expected"),
+    [
+        ("Is it white?", "Is it white?", True),
+        ("is it the white one", "All right. Is it the white one?", True),
+        ("all right, is it the white one", "All right. Is it the white one?", True),
+        ("it is white", "Is it white?", False),
+        ("no is it white", "Is it white?", False),
+        ("is it the red one", "Is it the white one?", False),
+        ("the red one", "The red one?", False),
+        ("yes", "Is it white?", False),
+        ("", "Is it white?", False),
+    ],
+)
+def test_echo_is_the_question_word_for_word(heard, line, expected):
+    assert echo.is_echo(heard, line, 0.0) is expected
 
 
 async def test_chat_log_has_both_sides(core, fake, entry):

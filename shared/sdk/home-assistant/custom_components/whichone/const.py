@@ -17,6 +17,8 @@ WAIT_S: Final = 6.0
 RETRY_S: Final = 15.0
 # Seconds that a stop is sent again while the robot's console is away.
 STOP_RETRY_S: Final = 5.0
+# Seconds after a question in which a satellite may hear it.
+ECHO_S: Final = 15.0
 # Pause before a request is sent again, seconds.
 PAUSE_S: Final = 0.4
 # Pause between looks at an arm that may move, seconds, and looks at rest after which it does not: no event tells of it,

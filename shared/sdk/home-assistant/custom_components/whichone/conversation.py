@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections import OrderedDict
+from dataclasses import dataclass
 from typing import Any, Literal
 
 from homeassistant.components.conversation import (
@@ -21,6 +22,7 @@ from homeassistant.util import ulid
 from . import issues, spoken
 from .api import BegunAfresh, InvalidToken, Problem, RobotError, Words
 from .const import CONF_NAME_PEOPLE
+from .echo import is_echo
 from .entity import WhichoneEntity
 from .link import WhichoneEntry
 from .stops import is_stop
@@ -32,6 +34,15 @@ PARALLEL_UPDATES = 0  # a stop never waits for an earlier sentence
 
 # Dialogues whose latest line is remembered.
 _SHOWN_MAX = 64
+
+
+@dataclass(frozen=True)
+class _Shown:
+    """The line that a person was given last: its number, its words if it waits for an answer, and when."""
+
+    prompt: int
+    question: str | None
+    at_s: float
 
 
 async def async_setup_entry(hass: HomeAssistant, entry: WhichoneEntry, add: AddEntitiesCallback) -> None:
@@ -48,8 +59,7 @@ class Agent(WhichoneEntity, ConversationEntity):
         """Begin without an open dialogue."""
         super().__init__(entry, "robot")
         self._entry = entry
-        # The number of that line, and whether it waits for an answer.
-        self._shown: OrderedDict[str, tuple[int, bool]] = OrderedDict()
+        self._shown: OrderedDict[str, _Shown] = OrderedDict()
 
     @property
     def available(self) -> bool:
@@ -99,21 +109,27 @@ class Agent(WhichoneEntity, ConversationEntity):
         return True
 
     async def _say(self, user_input: ConversationInput, conversation_id: str) -> dict[str, Any]:
-        """Say it under a key of its own, and remember which line the person is given."""
+        """Say it under a key of its own, and remember which line the person is given.
+
+        A satellite that hears the question which it has just said goes on listening.
+        """
         user = user_input.context.user_id
         satellite = getattr(user_input, "satellite_id", None)  # newer than Home Assistant 2025.4
         whose = conversation_of(satellite, user_input.device_id, user, conversation_id)
+        shown, now_s = self._shown.get(whose), self.hass.loop.time()
+        is_aloud = bool(satellite or user_input.device_id)
+        if is_aloud and shown and shown.question and is_echo(user_input.text, shown.question, now_s - shown.at_s):
+            return {"kind": "silent", "text": "", "expects_answer": True}
         person = await name_of(self.hass, user) if self._entry.options.get(CONF_NAME_PEOPLE) else None
-        seen, is_question = self._shown.get(whose, (None, False))
-        words = Words(user_input.text, ulid.ulid_now(), whose, seen, person)
+        words = Words(user_input.text, ulid.ulid_now(), whose, shown.prompt if shown else None, person)
         try:
             reply = await self.link.robot.say(words)
         except Problem as problem:
-            if problem.code != "invalid" or seen is None or not problem.detail.startswith("seen:"):
+            if problem.code != "invalid" or shown is None or not problem.detail.startswith("seen:"):
                 raise
             # The robot begins afresh: its lines are numbered anew.
             self._shown.pop(whose, None)
-            if is_question:
+            if shown.question:
                 # Without its question an answer would be a request, or the answer to someone else's question.
                 self.link.nudge()
                 raise BegunAfresh("the question is gone") from problem
@@ -121,7 +137,8 @@ class Agent(WhichoneEntity, ConversationEntity):
         self.link.nudge()
         issues.clear(self.hass, self._entry, issues.RIGHTS)
         if reply["prompt"]:
-            self._shown[whose] = reply["prompt"], bool(reply["expects_answer"])
+            question = reply["text"] if reply["expects_answer"] else None
+            self._shown[whose] = _Shown(reply["prompt"], question, self.hass.loop.time())
             self._shown.move_to_end(whose)
             if len(self._shown) > _SHOWN_MAX:
                 self._shown.popitem(last=False)
