@@ -254,16 +254,19 @@ fn named_tests(text: &str) -> Vec<&str> {
 }
 
 #[test]
-fn tests_of_the_hazards_exist() {
-    let text = page(Path::new("docs/safety.md")).text;
-    let grep = ["-rhoE", "--include=*.rs", r"fn [a-z0-9_]+\(\)", "services", "shared", "tests"];
+fn tests_of_hazards_and_requirements_exist() {
+    let kinds = ["-rhoE", "--include=*.rs", "--include=*.py"];
+    let grep = [&kinds[..], &[r"(fn|def) [a-z0-9_]+\(", "services", "shared", "tests"]].concat();
     let found = std::process::Command::new("grep").args(grep).current_dir(TOP).output().unwrap();
     let functions = String::from_utf8(found.stdout).unwrap();
-    let functions: HashSet<&str> = functions.lines().collect();
-    let named = named_tests(&text);
-    assert!(named.len() > 20, "{named:?}");
-    for test in named {
-        let is_there = functions.contains(format!("fn {test}()").as_str());
-        assert!(is_there, "docs/safety.md: expected the name of a test, found {test}");
+    let names = functions.lines().filter_map(|line| line.split([' ', '(']).nth(1));
+    let names: HashSet<&str> = names.collect();
+    for (file, least) in [("docs/safety.md", 20), ("docs/home-assistant.md", 15)] {
+        let text = page(Path::new(file)).text;
+        let named = named_tests(&text);
+        assert!(named.len() > least, "{file}: {named:?}");
+        for test in named {
+            assert!(names.contains(test), "{file}: expected the name of a test, found {test}");
+        }
     }
 }

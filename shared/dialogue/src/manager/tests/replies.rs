@@ -103,7 +103,7 @@ fn talk_that_is_not_meant_for_the_robot_stays_unanswered() {
 
 /// Recognisers write "Thank you." and "you" into silence.
 #[test]
-fn thanks_and_words_without_a_meaning_leave_the_question_and_the_belief() {
+fn thanks_and_words_without_a_meaning_change_no_belief() {
     let mut manager = manager();
     let asking = first(&mut manager, words(&["white"]));
     for it in [Intent::Thank, Intent::None] {
