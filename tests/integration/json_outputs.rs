@@ -10,7 +10,7 @@ use whichone_tests::Group;
 const GOLDEN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/golden/json_keys.txt");
 
 /// Verbs whose output is looked at, in the order of a dialogue.
-const LINES: [&str; 29] = [
+const LINES: [&str; 30] = [
     "--version",
     "status",
     "console",

@@ -164,7 +164,7 @@ fn exports(group: &Group, files: &[PathBuf], topics: &serde_json::Map<String, Va
 fn check_trace(json: &[u8]) {
     let trace: Value = serde_json::from_slice(json).unwrap();
     let events = trace["traceEvents"].as_array().unwrap();
-    let of = |kind: &str| events.iter().filter(move |it| it["ph"] == kind);
+    let of = |kind: &'static str| events.iter().filter(move |it| it["ph"] == kind);
     let heard = of("X").filter(|it| it["cat"] == "heard").count();
     assert!(heard > 1, "{trace}");
     for begin in of("s") {

@@ -17,7 +17,7 @@ const BOUNDS: [Bound; 3] = [
     Bound {
         name: "lines of the core, with its tests",
         first: 135_525.0,
-        at_most: 120_100.0,
+        at_most: 120_000.0,
         measured: || CORE.iter().map(|folder| lines(folder)).sum::<usize>() as f64,
     },
     Bound {

@@ -36,6 +36,10 @@ const KILL_AGAIN: Duration = Duration::from_secs(1);
 /// its deadline, so that a stuck one cannot keep a stop waiting for ever.
 const EXTENSIONS_MAX: u32 = 4;
 
+/// Each start that was not ready in time doubles the time for the next one, up to so many times: on
+/// a busy machine, services that are killed together would only compete with their successors.
+const DOUBLINGS_MAX: u32 = 3;
+
 /// One service's state.
 #[derive(Clone, Debug)]
 pub struct Machine {
@@ -47,6 +51,8 @@ pub struct Machine {
     deadline: Option<Time>,
     restart_limiter: RestartLimiter,
     failure: Option<Failure>,
+    /// Starts in a row that were not ready in time.
+    late: u32,
     /// True if the current or last incarnation has said that it is short of a resource.
     short: bool,
 }
@@ -62,6 +68,7 @@ impl Machine {
             deadline: None,
             restart_limiter: RestartLimiter::default(),
             failure: None,
+            late: 0,
             short: false,
         }
     }
@@ -208,6 +215,7 @@ impl Machine {
     fn ready(&mut self, now: Time) -> Option<Effect> {
         if let State::Starting { .. } = self.state {
             self.state = State::Ready { since: now };
+            self.late = 0;
             self.deadline = self.limits.watchdog.map(|period| now + period);
         }
         None
@@ -223,7 +231,7 @@ impl Machine {
 
     fn extend(&mut self, by: Duration, now: Time) -> Option<Effect> {
         let latest = match self.state {
-            State::Starting { since } => since + self.limits.start * EXTENSIONS_MAX,
+            State::Starting { since } => since + self.start_limit() * EXTENSIONS_MAX,
             State::Stopping {
                 since, step: Step::Terminating, why: Why::Asked | Why::Hold, ..
             } => since + self.limits.stop * EXTENSIONS_MAX,
@@ -292,7 +300,10 @@ impl Machine {
             return None;
         }
         match self.state {
-            State::Starting { .. } => self.fail(Failure::NotReady, now),
+            State::Starting { .. } => {
+                self.late += 1;
+                self.fail(Failure::NotReady, now)
+            }
             State::Ready { .. } => self.fail(Failure::NoBeat, now),
             State::Stopping { ref mut step, .. } => {
                 *step = Step::Killing;
@@ -337,13 +348,19 @@ impl Machine {
         self.incarnation += 1;
         (self.failure, self.short) = (None, false);
         self.state = State::Starting { since: now };
-        self.deadline = Some(now + self.limits.start);
+        self.deadline = Some(now + self.start_limit());
         Effect::Spawn
+    }
+
+    /// The time that the present start may take.
+    fn start_limit(&self) -> Duration {
+        self.limits.start * 2_u32.pow(self.late.min(DOUBLINGS_MAX))
     }
 
     /// Resets it to down without a failure.
     fn rest(&mut self) {
         self.restart_limiter.forget();
+        self.late = 0;
         self.state = State::Down;
         self.deadline = None;
     }

@@ -1,5 +1,7 @@
 //! An attribute of places in a row, for otherwise identical objects: "Is it on the left?"
 
+use std::collections::HashMap;
+
 use crate::relation_truth::dot;
 use crate::{Attribute, Object, Role, Scene, Value, ValueId, View, WordId};
 
@@ -139,16 +141,26 @@ impl Scene {
             xyz.map(|[x, y, _]| dot([x, y], way))
         };
         let mut seen = vec![false; rows.len()];
+        let mut same: HashMap<&[Option<ValueId>], Vec<usize>> = HashMap::new();
+        let is_certain = |i: &usize| self.objects()[*i].chances.is_empty();
+        let (certain, doubtful): (Vec<usize>, _) = (0..rows.len()).partition(is_certain);
+        certain.iter().for_each(|i| same.entry(&self.objects()[*i].values).or_default().push(*i));
         for first in 0..rows.len() {
-            let is_alike = |i: &usize| {
-                let (object, other) = (&self.objects()[*i], &self.objects()[first]);
-                !object.taken && !other.taken && object.likeness(other) >= ALIKE_MIN
-            };
-            if seen[first] {
+            let other = &self.objects()[first];
+            if seen[first] || other.taken {
                 continue;
             }
-            let others = (first..rows.len()).filter(|i| !seen[*i]);
-            let alike: Vec<usize> = others.filter(is_alike).collect();
+            // Objects without doubts are alike if their values are the same: thousands are not
+            // compared with one another.
+            let mut alike: Vec<usize> = match is_certain(&first) {
+                true => [&same[&*other.values], &doubtful[..]].concat(),
+                false => (first..rows.len()).collect(),
+            };
+            alike.retain(|i| {
+                let object = &self.objects()[*i];
+                let is_left = *i >= first && !seen[*i] && !object.taken;
+                is_left && object.likeness(other) >= ALIKE_MIN
+            });
             if alike.len() < 2 {
                 continue;
             }

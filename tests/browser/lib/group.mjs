@@ -35,7 +35,12 @@ export class Group {
       group.config = join(home, "config");
       await cp(shipped, group.config, { recursive: true });
     }
-    await group.#start(settings);
+    try {
+      await group.#start(settings);
+    } catch (error) {
+      await group.down();
+      throw error;
+    }
     return group;
   }
 

@@ -82,6 +82,25 @@ fn start_without_readiness_is_stopped_and_backs_off() {
     assert_eq!(bench.machine.incarnation(), 2);
 }
 
+/// Else services of a busy machine would be killed at the same moment again and again.
+#[test]
+fn each_late_start_doubles_the_time_of_the_next_one() {
+    let mut bench = Bench::starting();
+    for start_ms in [10_000, 20_000, 40_000, 80_000, 80_000] {
+        assert_eq!(bench.after_ms(start_ms - 1), None, "{start_ms}");
+        assert_eq!(bench.after_ms(1), Some(Effect::Terminate), "{start_ms}");
+        bench.on(CRASH);
+        if bench.machine.actual() == Actual::Backoff {
+            assert_eq!(bench.after_ms(60_000), Some(Effect::Spawn));
+        }
+        bench.is(Wanted::Up, Actual::Starting);
+    }
+    bench.on(Event::Ready);
+    bench.on(Event::Restart);
+    assert_eq!(bench.on(STOPPED), Some(Effect::Spawn));
+    assert_eq!(bench.after_ms(10_000), Some(Effect::Terminate), "it was ready meanwhile");
+}
+
 #[test]
 fn silence_is_answered_with_abort_then_kill() {
     let mut bench = Bench::ready();
