@@ -4,7 +4,6 @@
 //! to the line or the pick that follows.
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::Path;
 
 use command_line::Outcome;
@@ -37,7 +36,9 @@ pub(super) fn export(
         Some(source) => source.clone(),
         None => paths()?.journal(),
     };
-    fs::metadata(source).map_err(|error| Failure::file(source, &error))?;
+    if !source.is_dir() {
+        safe_files::open_regular(source).map_err(|error| Failure::file(source, &error))?;
+    }
     safe_files::check_new_output(to).map_err(|error| Failure::file(to, &error))?;
     let found = journals::of(source);
     if found.is_empty() {
