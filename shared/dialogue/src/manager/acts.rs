@@ -3,7 +3,7 @@
 use scene::{ObjectId, Question};
 use vocabulary::ids::{PickId, PromptId};
 use vocabulary::time::Time;
-use vocabulary::{ActKind, NamedQuestion};
+use vocabulary::{ActKind, NamedQuestion, Outcome};
 
 use super::Manager;
 use super::line::{Content, Line, Preface, Remark};
@@ -180,6 +180,11 @@ impl Manager {
         }
         match state.act.kind {
             ActKind::Ask if state.open.is_some() => {
+                // Such words may be nobody's: recognisers make thanks of silence.
+                let says_nothing = matches!(remark, Remark::NotUnderstood | Remark::Welcome);
+                if says_nothing && self.is_given_up(state) {
+                    return self.close(state, Outcome::Abandoned, at, Content::Remark(remark));
+                }
                 self.put_again(state, Preface::Remark(remark), at);
             }
             ActKind::Pick | ActKind::Cancel | ActKind::PutBack if state.ordered().is_some() => {
@@ -201,6 +206,16 @@ impl Manager {
                 }
             }
         }
+    }
+}
+
+impl Manager {
+    /// Counts one more turn without an answer. Returns whether the question was put again for as
+    /// many as it is.
+    fn is_given_up(&self, state: &mut State) -> bool {
+        let Some(open) = &mut state.open else { return false };
+        open.silences += 1;
+        open.silences > self.setup.turns.repeats_max.max(1)
     }
 }
 

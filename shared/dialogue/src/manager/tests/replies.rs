@@ -6,8 +6,8 @@ use super::fixture::{
 };
 use crate::manager::{Cause, Manager, State};
 use scene::{Intent, Reading, Response};
-use vocabulary::ActKind;
 use vocabulary::ids::PromptId;
+use vocabulary::{ActKind, Outcome};
 
 fn intent(intent: Intent) -> Reading {
     Reading { intent, ..Reading::default() }
@@ -115,12 +115,34 @@ fn thanks_and_words_without_a_meaning_change_no_belief() {
     }
 }
 
+/// Recognisers may make any number of them of silence.
+#[test]
+fn words_without_a_meaning_bring_the_question_twice_more() {
+    let mut manager = manager();
+    let asking = first(&mut manager, words(&["white"]));
+    let mut state = asking.clone();
+    for it in [Intent::Thank, Intent::None] {
+        state = remark(&mut manager, &state, intent(it));
+        assert_eq!(state.act.question, asking.act.question, "{it:?}");
+    }
+    assert!(text(&state).ends_with("I am here when you need me."), "{}", text(&state));
+    let given_up = remark(&mut manager, &state, intent(Intent::Thank));
+    assert_eq!(text(&given_up), "You are welcome.");
+    assert_eq!(given_up.ended.unwrap().outcome, Outcome::Abandoned);
+    let answered = reply(&mut manager, &state, answer(Response::Yes));
+    assert_ne!(answered.open.map(|open| open.silences), Some(2), "an answer begins anew");
+}
+
 #[test]
 fn no_question_is_put_twice_in_the_same_words() {
     let mut manager = manager();
     let mut state = first(&mut manager, words(&["metallic"]));
     let mut said = vec![text(&state)];
     for reading in TALK.into_iter().filter(|it| !cancels(*it) && *it != Intent::StartOver) {
+        // Thanks count as no answer, as does what is not understood.
+        if reading == Intent::Thank {
+            continue;
+        }
         let wished = reading == Intent::Repeat;
         state = remark(&mut manager, &state, intent(reading));
         assert_eq!(state.act.kind, ActKind::Ask);
