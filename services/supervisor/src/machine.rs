@@ -189,6 +189,7 @@ impl Machine {
     fn restart(&mut self, now: Time) -> Option<Effect> {
         self.wanted = Wanted::Up;
         self.restart_limiter.forget();
+        self.late = 0;
         if self.is_live() {
             return self.end(Why::Asked, now);
         }
@@ -256,6 +257,10 @@ impl Machine {
             _ if self.wanted == Wanted::Down => self.rest(),
             Some(Why::Asked) => return Some(self.spawn(now)),
             _ if lacks && self.limits.restart != Restart::Never => self.retry(ready_for, now),
+            // Starts that are given more time each are too far apart for the limiter.
+            Some(Why::Failed) if self.late >= self.limits.restart_limits.exits_max => {
+                self.keep_held(HeldBecause::NeverReady(self.late));
+            }
             None if exit.is_permanent() => self.keep_held(HeldBecause::Permanent(exit)),
             Some(Why::Failed) => return self.again(false, ready_for, now),
             None => return self.again(exit.is_clean(), ready_for, now),

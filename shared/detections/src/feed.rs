@@ -206,6 +206,7 @@ impl<'a> Feed<'a> {
                 Printed::Posed(unnamed) if unnamed.hypotheses.is_empty() => {
                     problems
                         .push("a detection without a class; help: `results` with one".to_owned());
+                    is_whole = false;
                 }
                 Printed::Posed(mut posed_one) => {
                     if posed_one.frame.is_empty() {

@@ -1,12 +1,11 @@
-//! "The first one", in answer to a choice: the option at that place, in the spoken order. In answer
-//! to an offer, which names the object in question first: that one, or another.
+//! "The first one", in answer to a choice: the option at that place, in the spoken order.
 
 use scene::WordId;
 
 use crate::lexicon::{Lexicon, Sense};
 use crate::relation_words::ordinal;
-use crate::tagger::{Tag, after, before};
-use crate::token_class::{Class, classes};
+use crate::tagger::{Tag, after};
+use crate::token_class::Class;
 
 /// Replaces ordinals by the options that they denote.
 pub(crate) fn name_options<'a>(tags: &mut [Tag<'a>], options: &[WordId], lexicon: &'a Lexicon) {
@@ -20,24 +19,6 @@ pub(crate) fn name_options<'a>(tags: &mut [Tag<'a>], options: &[WordId], lexicon
             && let Some(value) = lexicon.value_of(*option)
         {
             tag.sense = Sense::Value(value);
-        }
-    }
-}
-
-/// Replaces ordinals that stand alone by what they answer to an offer of objects.
-pub(crate) fn answer_offer(tags: &mut [Tag<'_>]) {
-    for at in 0..tags.len() {
-        let (before, rest) = (before(tags, at), &tags[at + 1..]);
-        let mut rest = rest.iter().take_while(|tag| !tag.pauses());
-        let is_alone = before.is_none_or(|tag| tag.is(Class::Determiner) || tag.is(Class::Filler))
-            && rest.all(|tag| tag.is_any(classes![Head Courtesy Filler]));
-        let tag = &mut tags[at];
-        // "the left one" is a place.
-        if tag.is(Class::Ordinal)
-            && is_alone
-            && let Some(place) = place(tag, usize::MAX)
-        {
-            tag.sense = Sense::Class(if place == 0 { Class::Yes } else { Class::Other });
         }
     }
 }

@@ -17,7 +17,7 @@ use crate::indifference::{indifference, is_of_attribute};
 use crate::intent::{intent, is_remark, is_side_talk};
 use crate::judge::Judge;
 use crate::lexicon::Lexicon;
-use crate::ordinals::{answer_offer, name_options};
+use crate::ordinals::name_options;
 use crate::paper::WordSpotter;
 use crate::parsed::{ParsedUtterance, READINGS_MAX};
 use crate::question_words::{QuestionWords, SceneQuestions};
@@ -147,9 +147,6 @@ impl Reader {
         if let QuestionWords::Choice(options) = asked {
             let options: Vec<WordId> = options.into_iter().flatten().collect();
             name_options(&mut tags, &options, &self.lexicon);
-        }
-        if matches!(last_question, Question::Point(_)) {
-            answer_offer(&mut tags);
         }
         Heard { tags, asked }
     }

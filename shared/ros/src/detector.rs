@@ -124,6 +124,7 @@ impl Detector {
             change: Change::Look(Look::default()),
         };
         let mut look = Look { at_ns, whole: true, seen: Vec::new() };
+        let poses = self.counts.poses;
         for one in reported {
             match self.detection(one) {
                 Ok(detection) => look.seen.extend(detection),
@@ -133,6 +134,8 @@ impl Detector {
                 }
             }
         }
+        // What has no usable pose may be any object.
+        look.whole &= self.counts.poses == poses;
         sighting.change = Change::Look(look);
         sighting
     }

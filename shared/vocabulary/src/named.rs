@@ -41,8 +41,8 @@ pub enum QuestionView<Name> {
 pub fn options(scene: &Scene, question: Question) -> Vec<&str> {
     let attributes = scene.attributes();
     let mut options: Vec<&str> = match question {
+        Question::None => return Vec::new(),
         _ if !scene.contains(question) => return Vec::new(),
-        Question::None => return vec!["yes", "no"],
         Question::Point(_) | Question::Attribute(..) => vec!["yes", "no"],
         Question::Which(k) => {
             attributes[k.index()].values.iter().map(|value| value.spoken.as_str()).collect()

@@ -86,19 +86,29 @@ fn start_without_readiness_is_stopped_and_backs_off() {
 #[test]
 fn each_late_start_doubles_the_time_of_the_next_one() {
     let mut bench = Bench::starting();
-    for start_ms in [10_000, 20_000, 40_000, 80_000, 80_000] {
+    let late = |bench: &mut Bench, start_ms: u64| {
         assert_eq!(bench.after_ms(start_ms - 1), None, "{start_ms}");
         assert_eq!(bench.after_ms(1), Some(Effect::Terminate), "{start_ms}");
         bench.on(CRASH);
         if bench.machine.actual() == Actual::Backoff {
             assert_eq!(bench.after_ms(60_000), Some(Effect::Spawn));
         }
-        bench.is(Wanted::Up, Actual::Starting);
+    };
+    for start_ms in [10_000, 20_000] {
+        late(&mut bench, start_ms);
     }
     bench.on(Event::Ready);
+    assert_eq!(bench.on(CRASH), Some(Effect::Spawn), "it was ready meanwhile");
+    for start_ms in [10_000, 20_000] {
+        late(&mut bench, start_ms);
+    }
     bench.on(Event::Restart);
-    assert_eq!(bench.on(STOPPED), Some(Effect::Spawn));
-    assert_eq!(bench.after_ms(10_000), Some(Effect::Terminate), "it was ready meanwhile");
+    assert_eq!(bench.on(STOPPED), Some(Effect::Spawn), "a new attempt");
+    for start_ms in [10_000, 20_000, 40_000, 80_000, 80_000] {
+        bench.is(Wanted::Up, Actual::Starting);
+        late(&mut bench, start_ms);
+    }
+    assert_eq!(bench.machine.held_because(), Some(HeldBecause::NeverReady(5)));
 }
 
 #[test]

@@ -59,6 +59,8 @@ pub enum HeldBecause {
     Permanent(ProcessExit),
     /// It ended this often within the window.
     TooOften(u32),
+    /// So many starts in a row were not ready in time.
+    NeverReady(u32),
     /// It failed, and its restart policy is `never`.
     Policy,
 }
@@ -69,6 +71,7 @@ impl fmt::Display for HeldBecause {
             Self::Operator => write!(f, "held by the operator"),
             Self::Permanent(exit) => write!(f, "{exit}"),
             Self::TooOften(exits) => write!(f, "{exits} exits in a short time"),
+            Self::NeverReady(starts) => write!(f, "{starts} starts, none ready in time"),
             Self::Policy => write!(f, "its restart policy is never"),
         }
     }

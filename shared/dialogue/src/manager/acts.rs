@@ -47,7 +47,9 @@ impl Manager {
             return set_reasons(state, reasons);
         }
         open.presentations += 1;
-        if stands {
+        // One that was answered in doubt is asked anew, and counts again.
+        let is_answered = open.prompts.last().is_some_and(|prompt| prompt.answered.is_some());
+        if stands && !is_answered {
             let at = reasons.decided;
             set_reasons(state, reasons);
             return self.put_again(state, basis.preface, at);

@@ -129,6 +129,9 @@ impl Trace {
                 JournalRecord::Arm(record) => trace.arm(line, record, at),
             }
         }
+        if let Some((since, name)) = trace.moving.take() {
+            trace.instant(MOVED, &name, since);
+        }
         trace.arrows();
         trace
     }

@@ -59,25 +59,6 @@ fn choices_are_answered_by_value_by_order_and_by_neither() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// An offer names the object in question first.
-#[test]
-fn offers_are_answered_by_order() {
-    let reader = Reader::new(&scene("bowls"), vocabulary::Language::Careful);
-    for (said, meaning) in [
-        ("the first one; first; the first; number one; the first one, please", Response::Yes),
-        (
-            "the second one; second; the second; number two; the last one; the latter; no, the second one",
-            Response::No,
-        ),
-        ("the second one from the left; just a second; wait a second; one second", Response::None),
-    ] {
-        for text in said.split("; ") {
-            let response = reader.read(text, Question::Point(scene::ObjectId(0))).response;
-            assert_eq!(response, meaning, "{text}");
-        }
-    }
-}
-
 #[test]
 fn no_and_another_attribute_may_take_back_what_was_said_before() {
     let scene = scene("bowls");

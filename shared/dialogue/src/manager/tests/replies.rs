@@ -146,7 +146,7 @@ fn no_question_is_put_twice_in_the_same_words() {
         let wished = reading == Intent::Repeat;
         state = remark(&mut manager, &state, intent(reading));
         assert_eq!(state.act.kind, ActKind::Ask);
-        let text = text(&state);
+        let text = text(&state).replace(" I am here when you need me.", "");
         let question = text.rsplit_once(['.', '!']).map_or(text.as_str(), |(_, it)| it.trim());
         assert!(wished || !said.iter().any(|it| it.ends_with(question)), "{text} after {said:?}");
         said.push(text);
