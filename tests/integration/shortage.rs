@@ -170,12 +170,12 @@ mod as_root {
                 clock::now()
             });
             while !short.is_finished() {
-                is_accepted("please");
+                is_accepted("hello");
             }
             short.join().expect("the disk is freed")
         });
         wait_for("an utterance that is accepted again", 20.0, || {
-            is_accepted("please").then_some(())
+            is_accepted("hello").then_some(())
         });
         assert!(clock::now().since(freed) < Span::from_ms(20_000), "it goes on by itself");
         wait_for("a ready group", 10.0, || (group.call(&["status"]).code == Some(0)).then_some(()));

@@ -306,7 +306,7 @@ impl Machine {
         }
         match self.state {
             State::Starting { .. } => {
-                self.late += 1;
+                self.late += u32::from(!self.short);
                 self.fail(Failure::NotReady, now)
             }
             State::Ready { .. } => self.fail(Failure::NoBeat, now),

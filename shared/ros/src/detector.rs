@@ -134,8 +134,9 @@ impl Detector {
                 }
             }
         }
-        // What has no usable pose may be any object.
-        look.whole &= self.counts.poses == poses;
+        // What has no usable pose, or no class, may be any object.
+        let is_named = |one: &Reported| one.hypotheses.iter().any(|it| it.score > 0.0);
+        look.whole &= self.counts.poses == poses && reported.iter().all(is_named);
         sighting.change = Change::Look(look);
         sighting
     }

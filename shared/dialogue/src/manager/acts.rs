@@ -57,7 +57,12 @@ impl Manager {
         let prompt = self.new_prompt(state, question);
         let Some(open) = &mut state.open else { return };
         // The wording is a function of the state: a replay says the same.
-        let line = Line { preface: basis.preface, content: self.wording(open, prompt) };
+        let content = match &state.act.line.content {
+            // What was offered in words is not pointed at.
+            Content::Offered(nearest) if stands => Content::Offered(nearest.clone()),
+            _ => self.wording(open, prompt),
+        };
+        let line = Line { preface: basis.preface, content };
         set(state, Act { kind: ActKind::Ask, prompt, presentation: 1, question, line, ..reasons });
     }
 
@@ -97,14 +102,16 @@ impl Manager {
         let Some(question) = open.prompt(prompt).map(|prompt| prompt.question) else {
             return Content::Silence;
         };
-        let alike = open.prompts.iter().filter(|prompt| prompt.question == question);
-        let time = 1 + alike.map(|prompt| prompt.times).sum::<u32>();
+        let alike = || open.prompts.iter().filter(|prompt| prompt.question == question);
+        // The wordings of a question go on where they were.
+        let variant = alike().next().map_or(prompt, |prompt| prompt.id).0;
+        let time = 1 + alike().map(|prompt| prompt.times).sum::<u32>();
         let choices = self.choices(&open.belief(), question);
         let is_last = open.silences > 0 && open.silences >= self.setup.turns.repeats_max;
         if let Some(prompt) = open.prompt_mut(prompt) {
             prompt.times += 1;
         }
-        Content::Question { variant: prompt.0, time, choices, is_last }
+        Content::Question { variant, time, choices, is_last }
     }
 
     /// Returns the values that the wanted object may have for the attribute in question, in their
@@ -182,9 +189,7 @@ impl Manager {
         }
         match state.act.kind {
             ActKind::Ask if state.open.is_some() => {
-                // Such words may be nobody's: recognisers make thanks of silence.
-                let says_nothing = matches!(remark, Remark::NotUnderstood | Remark::Welcome);
-                if says_nothing && self.is_given_up(state) {
+                if self.is_given_up(state, &remark) {
                     return self.close(state, Outcome::Abandoned, at, Content::Remark(remark));
                 }
                 self.put_again(state, Preface::Remark(remark), at);
@@ -212,13 +217,25 @@ impl Manager {
 }
 
 impl Manager {
-    /// Counts one more turn without an answer. Returns whether the question was put again for as
-    /// many as it is.
-    fn is_given_up(&self, state: &mut State) -> bool {
+    /// Counts one more turn without an answer, if the remark replies to words that may be nobody's.
+    /// Returns whether too many of them have followed one another.
+    fn is_given_up(&self, state: &mut State, remark: &Remark) -> bool {
+        let follows = matches!(&state.act.line.preface, Preface::Remark(it) if says_nothing(it));
         let Some(open) = &mut state.open else { return false };
-        open.silences += 1;
-        open.silences > self.setup.turns.repeats_max.max(1)
+        if says_nothing(remark) {
+            open.silences += 1;
+            return follows && open.silences > self.setup.turns.repeats_max.max(1);
+        }
+        if !matches!(remark, Remark::Stopped | Remark::StopUnconfirmed) {
+            open.silences = 0;
+        }
+        false
     }
+}
+
+/// Whether a remark replies to words without content: recognisers make such words of silence.
+fn says_nothing(remark: &Remark) -> bool {
+    matches!(remark, Remark::NotUnderstood | Remark::Welcome | Remark::Goodbye)
 }
 
 /// Orders the same pick under a new key.

@@ -141,7 +141,7 @@ pub struct Interaction {
     pub presentations: u32,
     /// Decisions so far; seeds a planner's random numbers.
     pub step: u32,
-    /// Consecutive response windows that passed in silence.
+    /// Turns in a row without an answer: response windows in silence, words without a meaning.
     pub silences: u32,
     /// First and last utterance.
     pub utterances: (UtteranceSeq, UtteranceSeq),

@@ -271,7 +271,9 @@ mod tests {
         assert_eq!(ask(&second), None);
         let _back = StandIn::start_at(port, Manner::Answer("yes".to_owned()));
         assert_eq!(reported.recv_timeout(PATIENCE), Ok(None), "without an utterance");
-        assert_eq!(ask(&second).unwrap().text, "yes");
+        // A busy machine may be late a few times.
+        let heard = (0..50).find_map(|_| ask(&second)).unwrap();
+        assert_eq!(heard.text, "yes");
     }
 
     #[test]

@@ -129,6 +129,9 @@ fn words_without_a_meaning_bring_the_question_twice_more() {
     let given_up = remark(&mut manager, &state, intent(Intent::Thank));
     assert_eq!(text(&given_up), "You are welcome.");
     assert_eq!(given_up.ended.unwrap().outcome, Outcome::Abandoned);
+    let asked_back = remark(&mut manager, &state, intent(Intent::AskHelp));
+    let thanked = remark(&mut manager, &asked_back, intent(Intent::Thank));
+    assert_eq!(thanked.act.question, asking.act.question, "talk between them begins anew");
     let answered = reply(&mut manager, &state, answer(Response::Yes));
     assert_ne!(answered.open.map(|open| open.silences), Some(2), "an answer begins anew");
 }
