@@ -1,6 +1,6 @@
 //! A server for tests, with every kind of misbehaviour.
 
-use std::io::{BufReader, Read as _, Write as _};
+use std::io::{self, BufReader, Read as _, Write as _};
 use std::net::{TcpListener, TcpStream};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
@@ -130,10 +130,10 @@ fn reply(
     answer: impl FnOnce(String) -> Vec<Event>,
 ) -> Option<()> {
     match manner {
-        Manner::Answer(text) => send(stream, &answer(text)),
+        Manner::Answer(text) => answer_all(stream, &answer(text)),
         Manner::Slow(text, after) => {
             thread::sleep(after);
-            send(stream, &answer(text))
+            answer_all(stream, &answer(text))
         }
         Manner::Error(text) => send(stream, &[Event::Error(text)]),
         Manner::Bytes(bytes) => {
@@ -153,6 +153,13 @@ fn reply(
 
 fn send(mut stream: &TcpStream, events: &[Event]) -> Option<()> {
     events.iter().try_for_each(|event| Frame::from(event).write(&mut stream)).ok()
+}
+
+/// Sends an answer, and waits until the client has gone: what it sends to a closed connection would
+/// take away what it has not read yet.
+fn answer_all(mut stream: &TcpStream, events: &[Event]) -> Option<()> {
+    send(stream, events)?;
+    io::copy(&mut stream, &mut io::sink()).ok().map(drop)
 }
 
 fn info() -> Event {
