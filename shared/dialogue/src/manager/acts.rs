@@ -214,9 +214,7 @@ impl Manager {
             }
         }
     }
-}
 
-impl Manager {
     /// Counts one more turn without an answer, if the remark replies to words that may be nobody's.
     /// Returns whether too many of them have followed one another.
     fn is_given_up(&self, state: &mut State, remark: &Remark) -> bool {
