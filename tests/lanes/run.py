@@ -8,7 +8,8 @@ LANE is quick, full or nightly (`lanes.toml`): full holds quick, and nightly wha
 programs. Standard input is what `cargo test --no-run --message-format=json-render-diagnostics` printed.
 
 Programs that start processes run at normal priority, those that only compute fill the gaps at the lowest one. Tests
-in real time come last, once the process WHICHONE_BESIDE, which tests something else meanwhile, has ended. A few
+in real time wait for the other tests with processes, and for the process WHICHONE_BESIDE, which tests something else
+meanwhile. A few
 failed tests are tried again, alone, and must pass three times in a row: `flaky.toml`. At the end nothing may be left:
 processes, shared memory, temporary files. With WHICHONE_TIMES set it prints the slowest tests.
 """
@@ -192,8 +193,9 @@ class Runner:
                 program = queue.pop(0)
             self.record(self.run(program, options, nice))
 
-    def run_all(self, selected):
-        """Runs the programs side by side, the longest first, and then what needs the machine for itself."""
+    def run_all(self, selected, is_full):
+        """Runs the programs side by side, the longest first; in the full lane the tests in real time after the others
+        with processes."""
         rank = {name: n for n, name in enumerate(self.lanes["slowest"])}
         longest = lambda program: (-self.seconds.get(program.name, 0), rank.get(program.name, len(rank)))
         processes = [p for p in selected if p.name in self.lanes["processes"]]
@@ -202,20 +204,26 @@ class Runner:
         cores = os.cpu_count() or 2
         beside = [f"--skip={part}" for part in self.lanes["alone"]]
         # Tests with processes wait most of their time: beside the longest program the others run one by one.
-        queues = [(processes[:1], 2 * cores, 0), (processes[1:], cores, 0)] + [(pure, 1, 19)] * cores
-        threads = [
-            threading.Thread(target=self.run_queue, args=(queue, [*beside, f"--test-threads={at_once}", *self.options], nice))
-            for queue, at_once, nice in queues
-        ]
-        for thread in threads:
-            thread.start()
-        for thread in threads:
+        queues = [(processes[:1], 2 * cores, 0), (processes[1:], cores, 0)]
+        first = [self.start(queue, [*beside, f"--test-threads={at_once}"], nice) for queue, at_once, nice in queues]
+        gaps = [self.start(pure, ["--test-threads=1"], 19) for _ in range(cores)]
+        for thread in first:
+            thread.join()
+        wait_for_end(os.environ.get("WHICHONE_BESIDE"))
+        if is_full:
+            self.run_alone(processes)
+        for thread in gaps:
             thread.join()
 
+    def start(self, queue, options, nice):
+        thread = threading.Thread(target=self.run_queue, args=(queue, [*options, *self.options], nice))
+        thread.start()
+        return thread
+
     def run_alone(self, selected):
-        """Runs those tests, one for each core."""
+        """Runs the tests in real time, one for each core."""
         for program in selected:
-            tests = [] if program.is_unit else self.tests_alone(program)
+            tests = self.tests_alone(program)
             if tests:
                 included = [option for option in self.options if option == "--include-ignored"]
                 options = [f"--test-threads={os.cpu_count() or 2}", *included, "--exact", *tests]
@@ -394,10 +402,7 @@ def main():
         for program in selected:
             runner.record(runner.run(program, ["--test-threads=1", *options]))
     else:
-        runner.run_all(selected)
-    wait_for_end(os.environ.get("WHICHONE_BESIDE"))
-    if lane == "full":
-        runner.run_alone(selected)
+        runner.run_all(selected, lane == "full")
     (KEPT / "seconds.json").write_text(json.dumps(runner.seconds, indent=1, sort_keys=True))
     sys.exit(0 if judge(lane, runner, leftovers, began) else 1)
 
