@@ -6,7 +6,7 @@ use crate::answer::{self, Answer};
 use crate::clauses::{Clause, Topic};
 use crate::content::{Asserted, Content};
 use crate::fates::{Fates, Polarity};
-use crate::intent::commands;
+use crate::intent::{commands, is_conditional};
 use crate::lexicon::{Sense, ValueSense};
 use crate::negation;
 use crate::negation_scope::NegationScope;
@@ -87,9 +87,12 @@ impl<'a> Extractor<'a, '_> {
             Class::No => self.no(at),
             Class::Repair | Class::Withdraw => self.correct(),
             Class::Cancel | Class::StartOver if commands(self.tags, clause, class) => {
-                // "never mind, the red one": nothing said before counts.
                 self.end_scope();
-                self.content.clear();
+                // "never mind, the red one": nothing said before counts. "Get a pen, if it's blue
+                // leave it": the pen stays wanted.
+                if !is_conditional(self.tags, at) {
+                    self.content.clear();
+                }
             }
             Class::Unsure => self.content.answers.push(Answer::Unsure, self.tags, at),
             Class::Pondering => self.content.answers.push(Answer::Pondering, self.tags, at),

@@ -18,10 +18,6 @@ use crate::token_class::{Class, classes};
 /// Phrases that say nothing before a command or after it.
 const BESIDE: &[Class] = classes![Filler Courtesy No Yes Repair WeakYes And But Join Plain];
 
-/// Number of words before a final "stop" among which a negator denies it ("do not stop", "don't let
-/// it stop"); one more before "to stop".
-const NEAR: usize = 2;
-
 /// Returns whether the words halt the arm. That is a matter of safety: it depends neither on the
 /// scene nor on the language, and the careful reading of such words is always a stop.
 pub fn is_stop(text: &str) -> bool {
@@ -113,9 +109,10 @@ impl<'t, 'a> Utterance<'t, 'a> {
             let class = phrase.and_then(|phrase| class(phrase.sense));
             let ends = !opens && self.is_called_out(at, &breath);
             if opens || ends {
+                let is_cry = opens && self.is_cry(at);
                 let is_whole = |words: &usize| {
                     *words >= phrase_words
-                        && !self.is_joined(at + words, breath.end)
+                        && !self.is_joined(at + words, breath.end, is_cry && *words == 1)
                         && (opens || at + words == breath.end)
                 };
                 let commands = self.matches(Place::Command, at, breath.end);
@@ -138,9 +135,7 @@ impl<'t, 'a> Utterance<'t, 'a> {
     fn is_called_out(&self, at: usize, breath: &Range<usize>) -> bool {
         const BEFORE: &[Class] = classes![One Head It No Yes WeakYes Courtesy Filler];
         let is_stop = self.tokens[at].word == "stop";
-        let reach = NEAR + usize::from(self.tokens[at - 1].word == "to");
-        let near = at.saturating_sub(reach).max(breath.start);
-        if self.tokens[near..at].iter().any(|token| PATTERNS.is_in("negators", token.word)) {
+        if self.is_denied(&self.tokens[breath.start..at]) {
             return false;
         }
         let before = self.own.word(self.tokens[at - 1].word).and_then(class);
@@ -148,20 +143,45 @@ impl<'t, 'a> Utterance<'t, 'a> {
             || is_stop && !self.is_no_order(breath.start, at)
     }
 
+    /// Returns whether a negator governs the word after these: "don't", "don't ever let it", but
+    /// not "it's not safe". "Can't you" asks for it.
+    fn is_denied(&self, before: &[Token<'_>]) -> bool {
+        let is_in = |set: &str, token: &Token<'_>| PATTERNS.is_in(set, token.word);
+        let between = before.iter().rev().take_while(|token| is_in("governed", token)).count();
+        let (before, between) = before.split_at(before.len() - between);
+        let Some((negator, opening)) = before.split_last() else { return false };
+        let is_asked = between.first().is_some_and(|token| token.word == "you")
+            && opening.iter().any(|token| is_in("requesting", token));
+        is_in("negators", negator) && !is_asked
+    }
+
     /// "the bus stop", "did you stop", "how to stop": a name, a question, or someone's activity.
+    /// "You should stop" is none.
     fn is_no_order(&self, start: usize, at: usize) -> bool {
         let is_in = |set: &str, back: usize| {
             at >= start + back && PATTERNS.is_in(set, self.tokens[at - back].word)
         };
         let is_told = is_in("subjects", 1) && is_in("asking", 2);
-        is_in("naming", 1) || is_in("asking", 1) || is_told
+        let is_bidden = is_in("bidding", 1) && is_in("bidden", 2);
+        is_in("naming", 1) || is_in("asking", 1) && !is_bidden || is_told
+    }
+
+    /// Returns whether the word is cried to whoever can stop the robot, by any name: "stop Robbie".
+    fn is_cry(&self, at: usize) -> bool {
+        ["stop", "halt", "freeze"].iter().any(|word| {
+            let number = PATTERNS.numbers.get(*word).copied();
+            number.is_some() && self.forms[at].contains(&number)
+        })
     }
 
     /// "stop sign", "hold it in": the rest belongs to the words before.
-    fn is_joined(&self, at: usize, end: usize) -> bool {
+    fn is_joined(&self, at: usize, end: usize, is_cry: bool) -> bool {
         let Some(next) = self.tokens[..end].get(at) else { return false };
         if next.gap == Gap::Glued {
             return true;
+        }
+        if is_cry {
+            return PATTERNS.is_in("compounds", next.word);
         }
         let is_doing =
             next.word.len() > 4 && (next.word.ends_with("ing") || next.word.ends_with("ly"));

@@ -1,6 +1,7 @@
 //! The intent of an utterance.
 
 use scene::{Intent, Role};
+use words::Gap;
 
 use crate::clauses::{Clause, Topic};
 use crate::content::Content;
@@ -68,6 +69,22 @@ pub(crate) fn commands(tags: &[Tag<'_>], clause: &Clause, class: Class) -> bool 
     }
     let plain = tags[range].iter().all(|tag| !tag.is_unknown());
     plain && clause.topic != Topic::Off
+}
+
+/// Returns whether the words from `at` on are for one case only: "if it's empty leave it", but not
+/// "the pen if you have one, never mind".
+pub(crate) fn is_conditional(tags: &[Tag<'_>], at: usize) -> bool {
+    const ENDS: &[Class] = classes![Fetch Want No Repair];
+    let is_condition =
+        |tag: &Tag<'_>| tag.is(Class::Join) && matches!(tag.word, "if" | "unless" | "when");
+    let Some(condition) = tags[..at].iter().rposition(|tag| is_condition(tag) || tag.is_any(ENDS))
+    else {
+        return false;
+    };
+    let opens =
+        condition == 0 || tags[condition].pauses() || tags[condition - 1].is_any(classes![And But]);
+    let mut gaps = tags[condition + 1..=at].iter().map(|tag| tag.gap);
+    is_condition(&tags[condition]) && gaps.all(|gap| gap < Gap::Pause || opens && gap < Gap::Stop)
 }
 
 /// "I don't want a bowl any more", "forget about the bowl": any of them is declined. `new`: not an
