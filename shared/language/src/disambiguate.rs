@@ -21,33 +21,35 @@ pub(crate) fn disambiguate<'a>(lexicon: &'a Lexicon, tags: &mut [Tag<'a>]) {
             tags[at].add_doubt(doubt);
         }
     }
-    mark_tag_questions(tags);
 }
 
-/// Marks "isn't it" after a statement as words without a meaning of their own, where no pause is
-/// heard before it: "that's the one isn't it", but neither "that isn't it" nor "I'm sure the white
-/// one isn't it".
-fn mark_tag_questions(tags: &mut [Tag<'_>]) {
+/// Drops "isn't it" after a statement where no pause is heard before it: "that's the one isn't it",
+/// but neither "that isn't it" nor "I'm sure the white one isn't it".
+pub(crate) fn drop_tag_questions(tags: &mut Vec<Tag<'_>>) {
+    let mut at = 0;
+    while at < tags.len() {
+        if is_tag_question(tags, at) {
+            tags.drain(at..at + 3);
+        }
+        at += 1;
+    }
+}
+
+fn is_tag_question(tags: &[Tag<'_>], at: usize) -> bool {
     const NOUN_PHRASE: &[Class] = classes![
         Determiner Possessive Head One Pointer It Preposition Landmark Plain
     ];
     let in_phrase = |tag: &&Tag<'_>| tag.is_value() || tag.is_any(NOUN_PHRASE);
-    for at in 1..tags.len().saturating_sub(2) {
-        let words = &tags[at..at + 3];
-        let is_tag = words[0].is_any(classes![Be Auxiliary])
-            && words[1].is(Class::Not)
-            && words[2].is_any(classes![It First Second Pointer])
-            && tags.get(at + 3).is_none_or(Tag::pauses);
-        let phrase = tags[..at].iter().rev().take_while(in_phrase).count();
-        let Some(verb) = (at - phrase).checked_sub(1).filter(|_| is_tag) else { continue };
-        let states = tags[verb].is_any(classes![Be Auxiliary])
-            || phrase == 0 && tags[verb].is_any(classes![Yes WeakYes]);
-        if states && !tags[verb + 1..at + 3].iter().any(Tag::pauses) {
-            for tag in &mut tags[at..at + 3] {
-                tag.sense = Sense::Class(Class::Filler);
-            }
-        }
-    }
+    let [verb, not, subject, rest @ ..] = &tags[at..] else { return false };
+    let is_tag = verb.is_any(classes![Be Auxiliary])
+        && not.is(Class::Not)
+        && subject.is_any(classes![It First Second Pointer])
+        && rest.first().is_none_or(Tag::pauses);
+    let phrase = tags[..at].iter().rev().take_while(in_phrase).count();
+    let Some(stated) = (at - phrase).checked_sub(1).filter(|_| is_tag) else { return false };
+    let states = tags[stated].is_any(classes![Be Auxiliary Likely])
+        || phrase == 0 && tags[stated].is_any(classes![Yes WeakYes]);
+    states && !tags[stated + 1..at + 3].iter().any(Tag::pauses)
 }
 
 /// Words that the noun of a noun phrase may be followed by.

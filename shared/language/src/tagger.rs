@@ -5,7 +5,7 @@ use scene::Role;
 use words::{Gap, Token, Tokens};
 
 use crate::closed_class::{is_answer, is_closed_class, misspelt};
-use crate::disambiguate::disambiguate;
+use crate::disambiguate::{disambiguate, drop_tag_questions};
 use crate::halting::halting_words;
 use crate::lexicon::{Lexicon, Sense, ValueSense};
 use crate::question_words::QuestionWords;
@@ -181,6 +181,7 @@ pub(crate) fn tag<'a>(lexicon: &'a Lexicon, tokens: &Tokens<'a>) -> Vec<Tag<'a>>
         at += found.words;
     }
     disambiguate(lexicon, &mut tags);
+    drop_tag_questions(&mut tags);
     tags
 }
 
