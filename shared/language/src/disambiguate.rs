@@ -26,20 +26,14 @@ pub(crate) fn disambiguate<'a>(lexicon: &'a Lexicon, tags: &mut [Tag<'a>]) {
 /// Drops "isn't it" after a statement where no pause is heard before it: "that's the one isn't it",
 /// but neither "that isn't it" nor "I'm sure the white one isn't it".
 pub(crate) fn drop_tag_questions(tags: &mut Vec<Tag<'_>>) {
-    let mut at = 0;
-    while at < tags.len() {
-        if is_tag_question(tags, at) {
-            tags.drain(at..at + 3);
-        }
-        at += 1;
+    while let Some(at) = (0..tags.len()).find(|at| is_tag_question(tags, *at)) {
+        tags.drain(at..at + 3);
     }
 }
 
 fn is_tag_question(tags: &[Tag<'_>], at: usize) -> bool {
-    const NOUN_PHRASE: &[Class] = classes![
-        Determiner Possessive Head One Pointer It Preposition Landmark Plain
-    ];
-    let in_phrase = |tag: &&Tag<'_>| tag.is_value() || tag.is_any(NOUN_PHRASE);
+    const NOUN: &[Class] = classes![Determiner Possessive Head One Pointer It Preposition Landmark];
+    let in_phrase = |tag: &&Tag<'_>| tag.is_value() || tag.is_any(NOUN);
     let [verb, not, subject, rest @ ..] = &tags[at..] else { return false };
     let is_tag = verb.is_any(classes![Be Auxiliary])
         && not.is(Class::Not)

@@ -109,7 +109,8 @@ impl<'t, 'a> Utterance<'t, 'a> {
             let class = phrase.and_then(|phrase| class(phrase.sense));
             let ends = !opens && self.is_called_out(at, &breath);
             if opens || ends {
-                let is_cry = opens && self.is_cry(at);
+                // Cried to whoever can stop the robot, by any name: "stop Robbie".
+                let is_cry = opens && PATTERNS.is_in("cries", self.tokens[at].word);
                 let is_whole = |words: &usize| {
                     *words >= phrase_words
                         && !self.is_joined(at + words, breath.end, is_cry && *words == 1)
@@ -134,13 +135,10 @@ impl<'t, 'a> Utterance<'t, 'a> {
     /// "the white one stop", "what are you doing stop": called out at the end of a breath.
     fn is_called_out(&self, at: usize, breath: &Range<usize>) -> bool {
         const BEFORE: &[Class] = classes![One Head It No Yes WeakYes Courtesy Filler];
-        let is_stop = self.tokens[at].word == "stop";
-        if self.is_denied(&self.tokens[breath.start..at]) {
-            return false;
-        }
         let before = self.own.word(self.tokens[at - 1].word).and_then(class);
-        before.is_some_and(|class| BEFORE.contains(&class))
-            || is_stop && !self.is_no_order(breath.start, at)
+        let is_called = before.is_some_and(|class| BEFORE.contains(&class))
+            || self.tokens[at].word == "stop" && !self.is_no_order(breath.start, at);
+        is_called && !self.is_denied(&self.tokens[breath.start..at])
     }
 
     /// Returns whether a negator governs the word after these: "don't", "don't ever let it", but
@@ -164,14 +162,6 @@ impl<'t, 'a> Utterance<'t, 'a> {
         let is_told = is_in("subjects", 1) && is_in("asking", 2);
         let is_bidden = is_in("bidding", 1) && is_in("bidden", 2);
         is_in("naming", 1) || is_in("asking", 1) && !is_bidden || is_told
-    }
-
-    /// Returns whether the word is cried to whoever can stop the robot, by any name: "stop Robbie".
-    fn is_cry(&self, at: usize) -> bool {
-        ["stop", "halt", "freeze"].iter().any(|word| {
-            let number = PATTERNS.numbers.get(*word).copied();
-            number.is_some() && self.forms[at].contains(&number)
-        })
     }
 
     /// "stop sign", "hold it in": the rest belongs to the words before.

@@ -28,22 +28,7 @@ fn sections() -> Vec<SectionSchema> {
 /// A configuration folder with the given files and a scene of one object.
 struct Folder(TempDir);
 
-const ONE_BOWL: &str = r#"
-name = "one bowl"
-noun = "bowl"
-
-[[attributes]]
-name = "color"
-values = ["red"]
-
-[[objects]]
-name = "red_one"
-attributes = { color = "red" }
-xyz = [0.7, 0.2, -0.125]
-size = [0.10, 0.10, 0.06]
-grasp_width = 0.004
-form = "hollow"
-"#;
+const ONE_BOWL: &str = include_str!("../../../tests/fixtures/scenes/one_bowl.toml");
 
 impl Folder {
     fn new(files: &[(&str, &str)]) -> Self {

@@ -10,22 +10,7 @@ use tempfile::TempDir;
 
 use crate::{ArmSetup, durations, load};
 
-const ONE_BOWL: &str = r#"
-name = "one bowl"
-noun = "bowl"
-
-[[attributes]]
-name = "color"
-values = ["red"]
-
-[[objects]]
-name = "red_one"
-attributes = { color = "red" }
-xyz = [0.7, 0.2, -0.125]
-size = [0.10, 0.10, 0.06]
-grasp_width = 0.004
-form = "hollow"
-"#;
+const ONE_BOWL: &str = include_str!("../../../tests/fixtures/scenes/one_bowl.toml");
 
 /// Returns the shipped configuration folder.
 fn shipped() -> PathBuf {

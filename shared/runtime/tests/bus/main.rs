@@ -1,6 +1,8 @@
-//! Topics on real shared memory: schema checks, overflow, and history for late readers.
+//! Topics on real shared memory: schema checks, overflow, history for late readers, and segments.
 
 #![allow(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+
+mod segments;
 
 use iceoryx2::prelude::ZeroCopySend;
 use messages::layout::Layout;

@@ -1,11 +1,9 @@
 //! The segments behind the topics: reserved, private, and never waited for without end.
 
-#![allow(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
-
 use messages::topics;
 use messages::{AppliedMark, Epoch, Incarnation, PolicyView, Service};
 use runtime::bus::{Bus, BusError, Identity, SegmentError};
-use runtime::group::{GroupName, GroupPaths};
+use runtime::group::GroupPaths;
 use runtime::shm_cleanup;
 use std::fs::{self, File};
 use std::os::unix::fs::MetadataExt;
@@ -13,23 +11,13 @@ use std::path::PathBuf;
 use std::sync::mpsc;
 use std::time::Duration;
 
+use super::Shm;
+
 /// Timeout for an open that must fail by itself.
 const OPEN_MAX: Duration = Duration::from_secs(5);
 
-struct Shm {
-    _home: tempfile::TempDir,
-    paths: GroupPaths,
-}
-
 impl Shm {
-    fn new() -> Self {
-        let home = tempfile::Builder::new().prefix("wo").tempdir().unwrap();
-        let paths = GroupPaths::in_home(home.path(), &GroupName::new("bus").unwrap()).unwrap();
-        shm_cleanup::create_place(&paths).unwrap();
-        Self { _home: home, paths }
-    }
-
-    fn join(&self) -> Bus {
+    fn open(&self) -> Bus {
         join(&self.paths).unwrap()
     }
 
@@ -51,12 +39,6 @@ impl Shm {
     }
 }
 
-impl Drop for Shm {
-    fn drop(&mut self) {
-        shm_cleanup::remove_leftovers(&self.paths);
-    }
-}
-
 fn join(paths: &GroupPaths) -> Result<Bus, BusError> {
     Bus::open(paths, "test", Identity { epoch: Epoch(1), incarnation: Incarnation(1) })
 }
@@ -68,11 +50,11 @@ fn read_marks(paths: &GroupPaths) -> Result<(), BusError> {
 #[test]
 fn segments_are_private_and_their_pages_are_reserved() {
     let shm = Shm::new();
-    let bus = shm.join();
+    let bus = shm.open();
     let _listener = bus.wake_listener(Service::Speech).unwrap();
     let _marks = bus.writer::<AppliedMark>(&topics::MARK).unwrap();
     let _views = bus.encoded_writer::<PolicyView>(&topics::VIEW).unwrap();
-    let other = shm.join();
+    let other = shm.open();
     let _read = other.reader::<AppliedMark>(&topics::MARK).unwrap();
     for kind in ["global_mgmt", ".dynamic", ".data", ".connection", ".event"] {
         assert!(!shm.files(kind).is_empty(), "no {kind}");
@@ -87,7 +69,7 @@ fn segments_are_private_and_their_pages_are_reserved() {
 #[test]
 fn truncated_segments_are_an_error_and_no_hang() {
     let shm = Shm::new();
-    let bus = shm.join();
+    let bus = shm.open();
     // It is mapped here, and could not even be dropped.
     std::mem::forget(bus.writer::<AppliedMark>(&topics::MARK).unwrap());
     std::mem::forget(bus);
@@ -107,7 +89,7 @@ fn truncated_segments_are_an_error_and_no_hang() {
 #[ignore = "needs root: gives a file to another user"]
 fn second_user_owns_a_segment_and_it_is_refused() {
     let shm = Shm::new();
-    let _bus = shm.join();
+    let _bus = shm.open();
     for path in shm.files("global_mgmt") {
         std::os::unix::fs::chown(path, Some(65534), Some(65534)).unwrap();
     }
@@ -119,9 +101,9 @@ fn second_user_owns_a_segment_and_it_is_refused() {
 #[test]
 fn leftovers_of_every_former_start_are_found() {
     let shm = Shm::new();
-    let first = shm.join();
+    let first = shm.open();
     shm_cleanup::create_place(&shm.paths).unwrap();
-    let second = shm.join();
+    let second = shm.open();
     assert_eq!(shm.files("global_mgmt").len(), 2);
     std::mem::forget((first, second));
     shm_cleanup::remove_leftovers(&shm.paths);
