@@ -33,17 +33,20 @@ pub(crate) fn drop_tag_questions(tags: &mut Vec<Tag<'_>>) {
 
 fn is_tag_question(tags: &[Tag<'_>], at: usize) -> bool {
     const NOUN: &[Class] = classes![Determiner Possessive Head One Pointer It Preposition Landmark];
+    let [verb, not, it, rest @ ..] = &tags[at..] else { return false };
+    let is_tag = verb.is_any(classes![Be Auxiliary]) && not.is(Class::Not) && it.is(Class::It);
     let in_phrase = |tag: &&Tag<'_>| tag.is_value() || tag.is_any(NOUN);
-    let [verb, not, subject, rest @ ..] = &tags[at..] else { return false };
-    let is_tag = verb.is_any(classes![Be Auxiliary])
-        && not.is(Class::Not)
-        && subject.is_any(classes![It First Second Pointer])
-        && rest.first().is_none_or(Tag::pauses);
     let phrase = tags[..at].iter().rev().take_while(in_phrase).count();
-    let Some(stated) = (at - phrase).checked_sub(1).filter(|_| is_tag) else { return false };
-    let states = tags[stated].is_any(classes![Be Auxiliary Likely])
-        || phrase == 0 && tags[stated].is_any(classes![Yes WeakYes]);
-    states && !tags[stated + 1..at + 3].iter().any(Tag::pauses)
+    let Some(stated) = (at - phrase).checked_sub(1) else { return false };
+    // "It's the one that isn't it", but "that's it, isn't it".
+    let is_named = phrase < 2 || !tags[at - 1].is_any(classes![It Pointer]);
+    let is_stated = tags[stated].is(Class::Be) && is_named
+        || phrase == 0 && tags[stated].is_any(classes![Yes WeakYes])
+        || verb.is(Class::Auxiliary) && tags[stated].last == "be";
+    let is_relative =
+        stated > 1 && tags[stated - 1].is(Class::Pointer) && in_phrase(&&tags[stated - 2]);
+    let pauses = tags[stated + 1..at + 3].iter().any(Tag::pauses);
+    is_tag && is_stated && !is_relative && !pauses && rest.first().is_none_or(Tag::pauses)
 }
 
 /// Words that the noun of a noun phrase may be followed by.

@@ -88,9 +88,8 @@ impl<'a> Extractor<'a, '_> {
             Class::Repair | Class::Withdraw => self.correct(),
             Class::Cancel | Class::StartOver if commands(self.tags, clause, class) => {
                 self.end_scope();
-                // "never mind, the red one": nothing said before counts. "Get a pen, if it's blue
-                // leave it": the pen stays wanted.
-                if !is_conditional(self.tags, at) {
+                // "never mind, the red one": nothing said before counts.
+                if class == Class::StartOver || !is_conditional(self.tags, at) {
                     self.content.clear();
                 }
             }

@@ -141,20 +141,26 @@ impl<'t, 'a> Utterance<'t, 'a> {
         is_called && !self.is_denied(&self.tokens[breath.start..at])
     }
 
-    /// Returns whether a negator governs the word after these: "don't", "don't ever let it", but
-    /// not "it's not safe". "Can't you" asks for it.
+    /// Returns whether a negator governs the word after these: "don't", "don't ever let it", "I do
+    /// not want you to", but not "it's not safe" and "I don't want it". "Can't you" asks for it.
     fn is_denied(&self, before: &[Token<'_>]) -> bool {
-        let is_in = |set: &str, token: &Token<'_>| PATTERNS.is_in(set, token.word);
-        let between = before.iter().rev().take_while(|token| is_in("governed", token)).count();
-        let (before, between) = before.split_at(before.len() - between);
-        let Some((negator, opening)) = before.split_last() else { return false };
-        let is_asked = between.first().is_some_and(|token| token.word == "you")
-            && opening.iter().any(|token| is_in("requesting", token));
-        is_in("negators", negator) && !is_asked
+        let before = &before[before.len().saturating_sub(8)..];
+        let is_in = |set: &str, word: &str| PATTERNS.is_in(set, word);
+        let Some(not) = before.iter().rposition(|token| is_in("negators", token.word)) else {
+            return false;
+        };
+        let plain = before[not + 1..].iter().map(|token| token.word);
+        let between: Vec<&str> = plain.filter(|word| !is_in("emphasis", word)).collect();
+        match between[..] {
+            ["you"] => !before[..not].iter().any(|token| is_in("requesting", token.word)),
+            [who] | ["let", who] => is_in("subjects", who),
+            [want, "to"] => is_in("wishes", want),
+            [want, who, "to"] => is_in("wishes", want) && is_in("subjects", who),
+            _ => between.is_empty(),
+        }
     }
 
-    /// "the bus stop", "did you stop", "how to stop": a name, a question, or someone's activity.
-    /// "You should stop" is none.
+    /// "the bus stop", "did you stop", "how to stop", but not "you should stop": no order.
     fn is_no_order(&self, start: usize, at: usize) -> bool {
         let is_in = |set: &str, back: usize| {
             at >= start + back && PATTERNS.is_in(set, self.tokens[at - back].word)
@@ -171,7 +177,8 @@ impl<'t, 'a> Utterance<'t, 'a> {
             return true;
         }
         if is_cry {
-            return PATTERNS.is_in("compounds", next.word);
+            return PATTERNS.is_in("compounds", next.word)
+                && self.longest(Place::Command, at, end).is_none();
         }
         let is_doing =
             next.word.len() > 4 && (next.word.ends_with("ing") || next.word.ends_with("ly"));

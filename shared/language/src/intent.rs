@@ -71,8 +71,8 @@ pub(crate) fn commands(tags: &[Tag<'_>], clause: &Clause, class: Class) -> bool 
     plain && clause.topic != Topic::Off
 }
 
-/// Returns whether the words from `at` on are for one case only: "if it's empty leave it", but not
-/// "the pen if you have one, never mind".
+/// Returns whether the order at `at` leaves something in one case only: "if it's empty leave it", but
+/// not "if you have it forget it" and "if it's there, never mind".
 pub(crate) fn is_conditional(tags: &[Tag<'_>], at: usize) -> bool {
     const ENDS: &[Class] = classes![Fetch Want No Repair];
     let is_condition =
@@ -84,7 +84,12 @@ pub(crate) fn is_conditional(tags: &[Tag<'_>], at: usize) -> bool {
     let opens =
         condition == 0 || tags[condition].pauses() || tags[condition - 1].is_any(classes![And But]);
     let mut gaps = tags[condition + 1..=at].iter().map(|tag| tag.gap);
-    is_condition(&tags[condition]) && gaps.all(|gap| gap < Gap::Pause || opens && gap < Gap::Stop)
+    let leaves = matches!(tags[at].last, "it" | "them") && tags[at].word != "cancel";
+    let asks = tags[condition + 1].is(Class::Second);
+    leaves
+        && !asks
+        && is_condition(&tags[condition])
+        && gaps.all(|gap| gap < Gap::Pause || opens && gap < Gap::Stop)
 }
 
 /// "I don't want a bowl any more", "forget about the bowl": any of them is declined. `new`: not an

@@ -22,16 +22,8 @@ enum Fault {
 fn fault() -> impl Strategy<Value = Fault> {
     use Fault::*;
     let forged = prop_oneof![Just(u64::MAX), Just(u64::MAX - 1), 1 << 40..u64::MAX];
-    let usual = prop::sample::select(vec![
-        LoseAll,
-        LoseOdd,
-        Double,
-        Reverse,
-        LoseMark,
-        ReceiverRestarts,
-        SenderRestarts,
-    ]);
-    prop_oneof![7 => usual, 1 => forged.prop_map(ForgedMark)]
+    let usual = [LoseAll, LoseOdd, Double, Reverse, LoseMark, ReceiverRestarts, SenderRestarts];
+    prop_oneof![7 => prop::sample::select(usual.to_vec()), 1 => forged.prop_map(ForgedMark)]
 }
 
 struct Pair {

@@ -17,10 +17,6 @@ use super::Shm;
 const OPEN_MAX: Duration = Duration::from_secs(5);
 
 impl Shm {
-    fn open(&self) -> Bus {
-        join(&self.paths).unwrap()
-    }
-
     /// Files whose names contain `part`.
     fn files(&self, part: &str) -> Vec<PathBuf> {
         let all = shm_cleanup::leftovers(&self.paths).into_iter();
@@ -50,11 +46,11 @@ fn read_marks(paths: &GroupPaths) -> Result<(), BusError> {
 #[test]
 fn segments_are_private_and_their_pages_are_reserved() {
     let shm = Shm::new();
-    let bus = shm.open();
+    let bus = join(&shm.paths).unwrap();
     let _listener = bus.wake_listener(Service::Speech).unwrap();
     let _marks = bus.writer::<AppliedMark>(&topics::MARK).unwrap();
     let _views = bus.encoded_writer::<PolicyView>(&topics::VIEW).unwrap();
-    let other = shm.open();
+    let other = join(&shm.paths).unwrap();
     let _read = other.reader::<AppliedMark>(&topics::MARK).unwrap();
     for kind in ["global_mgmt", ".dynamic", ".data", ".connection", ".event"] {
         assert!(!shm.files(kind).is_empty(), "no {kind}");
@@ -69,7 +65,7 @@ fn segments_are_private_and_their_pages_are_reserved() {
 #[test]
 fn truncated_segments_are_an_error_and_no_hang() {
     let shm = Shm::new();
-    let bus = shm.open();
+    let bus = join(&shm.paths).unwrap();
     // It is mapped here, and could not even be dropped.
     std::mem::forget(bus.writer::<AppliedMark>(&topics::MARK).unwrap());
     std::mem::forget(bus);
@@ -89,7 +85,7 @@ fn truncated_segments_are_an_error_and_no_hang() {
 #[ignore = "needs root: gives a file to another user"]
 fn second_user_owns_a_segment_and_it_is_refused() {
     let shm = Shm::new();
-    let _bus = shm.open();
+    let _bus = join(&shm.paths).unwrap();
     for path in shm.files("global_mgmt") {
         std::os::unix::fs::chown(path, Some(65534), Some(65534)).unwrap();
     }
@@ -101,9 +97,9 @@ fn second_user_owns_a_segment_and_it_is_refused() {
 #[test]
 fn leftovers_of_every_former_start_are_found() {
     let shm = Shm::new();
-    let first = shm.open();
+    let first = join(&shm.paths).unwrap();
     shm_cleanup::create_place(&shm.paths).unwrap();
-    let second = shm.open();
+    let second = join(&shm.paths).unwrap();
     assert_eq!(shm.files("global_mgmt").len(), 2);
     std::mem::forget((first, second));
     shm_cleanup::remove_leftovers(&shm.paths);
