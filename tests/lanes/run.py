@@ -9,9 +9,8 @@ programs. Standard input is what `cargo test --no-run --message-format=json-rend
 
 Programs that start processes run at normal priority, those that only compute fill the gaps at the lowest one. Tests
 in real time wait for the other tests with processes, and for the process WHICHONE_BESIDE, which tests something else
-meanwhile. A few
-failed tests are tried again, alone, and must pass three times in a row: `flaky.toml`. At the end nothing may be left:
-processes, shared memory, temporary files. With WHICHONE_TIMES set it prints the slowest tests.
+meanwhile. A few failed tests are tried again, alone, and must pass three times in a row: `flaky.toml`. At the end
+nothing may be left: processes, shared memory, temporary files. With WHICHONE_TIMES set it prints the slowest tests.
 """
 
 import json

@@ -36,7 +36,7 @@ fn is_tag_question(tags: &[Tag<'_>], at: usize) -> bool {
     let [verb, not, it, rest @ ..] = &tags[at..] else { return false };
     let is_tag = verb.is_any(classes![Be Auxiliary]) && not.is(Class::Not) && it.is(Class::It);
     let in_phrase = |tag: &&Tag<'_>| tag.is_value() || tag.is_any(NOUN);
-    let phrase = tags[..at].iter().rev().take_while(in_phrase).count();
+    let phrase = tags[..at].iter().rev().take_while(|tag| is_tag && in_phrase(tag)).count();
     let Some(stated) = (at - phrase).checked_sub(1) else { return false };
     // "It's the one that isn't it", but "that's it, isn't it".
     let is_named = phrase < 2 || !tags[at - 1].is_any(classes![It Pointer]);
