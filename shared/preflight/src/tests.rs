@@ -120,12 +120,12 @@ fn preflight_reports_an_object_out_of_reach() {
     };
     let far = complaints(&bowl_with("xyz", "xyz = [2.0, 0.2, -0.125]"), &[]);
     let expected =
-        "scenes/bowls.toml:12:1: objects[0].xyz: `red_one` is out of reach of both limbs: ";
+        "scenes/bowls.toml:11:1: objects[0].xyz: `red_one` is out of reach of both limbs: ";
     assert!(far.starts_with(expected), "{far}");
     let left = complaints(&bowl_with("xyz", "xyz = [0.7, -0.8, -0.125]"), &[("arm.limb", "left")]);
     assert!(left.contains("`red_one` is out of reach of the left limb: "), "{left}");
     let wide = complaints(&bowl_with("grasp_width", "grasp_width = 0.09"), &[]);
-    let expected = "scenes/bowls.toml:14:1: objects[0].grasp_width: `red_one` cannot be grasped: ";
+    let expected = "scenes/bowls.toml:13:1: objects[0].grasp_width: `red_one` cannot be grasped: ";
     assert!(wide.starts_with(expected), "{wide}");
     let thin = complaints(&bowl_with("grasp_width", "grasp_width = 0.0015"), &[]);
     assert!(thin.contains("would close on 1.5 mm but holds 1.9 mm at least; help: "), "{thin}");

@@ -80,7 +80,7 @@ fn errors_of_all_layers_are_reported_at_once() {
         arm.toml:1:1: limb: expected a string, found an integer; help: write it in double quotes
         arm.toml:2:1: hover_m: expected a finite number, found a string; help: write digits, e.g. `1.5`
         --set: arm.restock: expected a boolean, found a string; help: write `true` or `false`
-        scenes/bowls.toml:16:1: objects[0].colour_blind: unknown key; help: remove it; the keys here are name, attributes, xyz, yaw, size, grasp_width, mass_kg, wall_deg, form, xyz, yaw, size, grasp_width, mass_kg, wall_deg, form"#]].assert_eq(&complaints.join("\n"));
+        scenes/bowls.toml:15:1: objects[0].colour_blind: unknown key; help: remove it; the keys here are name, attributes, xyz, yaw, size, grasp_width, mass_kg, wall_deg, form, xyz, yaw, size, grasp_width, mass_kg, wall_deg, form"#]].assert_eq(&complaints.join("\n"));
 }
 
 #[test]
