@@ -45,29 +45,19 @@ impl PolicyNode {
 
     /// Returns the node of the checkpoint.
     pub(crate) fn with_whole_state(config: Config, bytes: &[u8]) -> Result<Self, NodeError> {
-        let checkpoint = postcard::from_bytes(bytes);
-        let Checkpoint {
-            state,
-            floor,
-            said,
-            heard_of_speech,
-            rested,
-            rejected,
-            waiting_since,
-            next_send,
-            forgot,
-        } = checkpoint.map_err(|_| NodeError::foreign_checkpoint())?;
-        let record = Record { cause: Cause::Snapshot, at: Time(0), state };
+        let it: Checkpoint =
+            postcard::from_bytes(bytes).map_err(|_| NodeError::foreign_checkpoint())?;
+        let record = Record { cause: Cause::Snapshot, at: Time(0), state: it.state };
         let node = Self::recover(config, vec![record])?;
         Ok(Self {
-            floor,
-            said,
-            heard_of_speech,
-            rested,
-            rejected,
-            waiting_since,
-            next_send,
-            forgot,
+            floor: it.floor,
+            said: it.said,
+            heard_of_speech: it.heard_of_speech,
+            rested: it.rested,
+            rejected: it.rejected,
+            waiting_since: it.waiting_since,
+            next_send: it.next_send,
+            forgot: it.forgot,
             ..node
         })
     }

@@ -23,6 +23,31 @@ pub(crate) fn disambiguate<'a>(lexicon: &'a Lexicon, tags: &mut [Tag<'a>]) {
     }
 }
 
+/// Resolves what a question about a value decides: "not any more" denies it and cancels nothing, and
+/// "that's white" tells as much as "it's white".
+pub(crate) fn resolve_after_question(tags: &mut Vec<Tag<'_>>) {
+    for at in (0..tags.len()).rev() {
+        let (tag, opens) = (&tags[at], at == 0 || tags[at].pauses());
+        if tag.is(Class::Cancel)
+            && tag.word == "not"
+            && matches!(tag.second, "any" | "anymore" | "right")
+        {
+            tags[at].sense = Sense::Class(Class::WeakNo);
+        } else if opens && matches!(tag.word, "that" | "this") {
+            let noun = usize::from(tags.get(at + 1).is_some_and(|next| next.is(Class::Head)));
+            if let [be, value, ..] = &tags[at + 1 + noun..]
+                && matches!(tag.last, "that" | "this" | "one")
+                && be.is(Class::Be)
+                && value.is_value()
+            {
+                tags.drain(at + 1..at + 1 + noun);
+                let it = Sense::Class(Class::It);
+                tags[at] = Tag { sense: it, word: "it", second: "it", last: "it", ..tags[at] };
+            }
+        }
+    }
+}
+
 /// Drops "isn't it" after a statement where no pause is heard before it: "that's the one isn't it",
 /// but neither "that isn't it" nor "I'm sure the white one isn't it".
 pub(crate) fn drop_tag_questions(tags: &mut Vec<Tag<'_>>) {

@@ -9,6 +9,7 @@ use words::{Tokens, normalise};
 use crate::answer::response;
 use crate::clauses::{Clause, Topic, clauses};
 use crate::content::Content;
+use crate::disambiguate::resolve_after_question;
 use crate::extractor::extract;
 use crate::fates::{Fates, fates};
 use crate::halting::asks_to_go_on;
@@ -143,6 +144,9 @@ impl Reader {
         let is_yes_no = matches!(last_question, Question::Attribute(..) | Question::Point(_));
         if is_yes_no && self.lexicon.may_answer() && answers_alone(tokens, &tags, asked) {
             tags = tag(Lexicon::own(), tokens);
+        }
+        if matches!(asked, QuestionWords::Value(..)) {
+            resolve_after_question(&mut tags);
         }
         if let QuestionWords::Choice(options) = asked {
             let options: Vec<WordId> = options.into_iter().flatten().collect();
