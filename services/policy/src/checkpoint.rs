@@ -24,21 +24,19 @@ struct Checkpoint {
 impl PolicyNode {
     /// Returns the state; `None` if objects are tracked, which checkpoints do not cover.
     pub(crate) fn whole_state(&self) -> Option<Vec<u8>> {
-        let Self { manager: _, state, perceived, floor, said, heard_of_speech, .. } = self;
-        let Self { rested, rejected, waiting_since, next_send, forgot, .. } = self;
-        if perceived.is_some() {
+        if self.perceived.is_some() {
             return None;
         }
         let checkpoint = Checkpoint {
-            state: state.clone(),
-            floor: *floor,
-            said: *said,
-            heard_of_speech: *heard_of_speech,
-            rested: *rested,
-            rejected: *rejected,
-            waiting_since: *waiting_since,
-            next_send: *next_send,
-            forgot: *forgot,
+            state: self.state.clone(),
+            floor: self.floor,
+            said: self.said,
+            heard_of_speech: self.heard_of_speech,
+            rested: self.rested,
+            rejected: self.rejected,
+            waiting_since: self.waiting_since,
+            next_send: self.next_send,
+            forgot: self.forgot,
         };
         postcard::to_stdvec(&checkpoint).ok()
     }

@@ -23,28 +23,26 @@ pub(crate) fn disambiguate<'a>(lexicon: &'a Lexicon, tags: &mut [Tag<'a>]) {
     }
 }
 
-/// Resolves what a question about a value decides: "not any more" denies it and cancels nothing, and
-/// "that's white" tells as much as "it's white".
+/// Resolves what a question about a value decides, if nothing else is said: "it isn't any more" denies it
+/// and cancels nothing, and "that's white" tells as much as "it's white".
 pub(crate) fn resolve_after_question(tags: &mut Vec<Tag<'_>>) {
-    for at in (0..tags.len()).rev() {
-        let (tag, opens) = (&tags[at], at == 0 || tags[at].pauses());
-        if tag.is(Class::Cancel)
-            && tag.word == "not"
-            && matches!(tag.second, "any" | "anymore" | "right")
-        {
-            tags[at].sense = Sense::Class(Class::WeakNo);
-        } else if opens && matches!(tag.word, "that" | "this") {
-            let noun = usize::from(tags.get(at + 1).is_some_and(|next| next.is(Class::Head)));
-            if let [be, value, ..] = &tags[at + 1 + noun..]
-                && matches!(tag.last, "that" | "this" | "one")
-                && be.is(Class::Be)
-                && value.is_value()
-            {
-                tags.drain(at + 1..at + 1 + noun);
-                let it = Sense::Class(Class::It);
-                tags[at] = Tag { sense: it, word: "it", second: "it", last: "it", ..tags[at] };
-            }
-        }
+    const LEADS: &[Class] = classes![Filler Hedge Yes WeakYes It Be Plain];
+    let shows = |tag: &Tag<'_>| matches!(tag.word, "that" | "this");
+    let Some(at) = tags.iter().position(|tag| shows(tag) || !tag.is_any(LEADS)) else { return };
+    let (tag, noun) = (tags[at], tags.get(at + 1).is_some_and(|next| next.is(Class::Head)));
+    let rest = at + 1 + usize::from(noun);
+    if tag.is(Class::Cancel) && tag.word == "not" && matches!(tag.second, "any" | "anymore") {
+        let is_all = rest == tags.len();
+        tags[at].sense = if is_all { Sense::Class(Class::WeakNo) } else { tag.sense };
+    } else if let [be, value, ends @ ..] = &tags[rest..]
+        && shows(&tag)
+        && matches!(tag.last, "that" | "this" | "one")
+        && (be.is(Class::Be) && value.is_value())
+        && ends.iter().all(|tag| tag.is_any(classes![Filler Courtesy]))
+    {
+        let sense = Sense::Class(Class::It);
+        tags[at] = Tag { sense, word: "it", second: "it", last: "it", ..tag };
+        tags.drain(at + 1..rest);
     }
 }
 

@@ -36,7 +36,10 @@ impl ClauseAnalysis<'_> {
             });
             // "clear the"
             let has_object = matches!(tag.word, "clear" | "break")
-                || self.next(at).is_some_and(|next| next.is_any(OBJECTS) || next.is_unknown());
+                || self
+                    .clause
+                    .get(at + 1)
+                    .is_some_and(|next| next.is_any(OBJECTS) || next.is_unknown());
             (tag.is(Class::Put) && !self.brings_at(at) || self.throws_away(at))
                 && has_object
                 && !is_noun
@@ -66,7 +69,7 @@ impl ClauseAnalysis<'_> {
         let is_elsewhere =
             before.is_some_and(|it| matches!(it.word, "for" | "from" | "out" | "off"));
         let is_led = before.is_some_and(|it| it.is_any(LEADS));
-        let is_known = self.next(at).is_some_and(|next| next.is_role(Role::Place));
+        let is_known = self.clause.get(at + 1).is_some_and(|next| next.is_role(Role::Place));
         let is_here = match tag.word {
             "me" | "us" => is_led,
             "my" | "our" => is_led && !is_known,

@@ -56,10 +56,6 @@ impl<'a> ClauseAnalysis<'a> {
         self.clause.iter().any(|tag| tag.is_any(classes))
     }
 
-    pub(crate) fn next(&self, at: usize) -> Option<&'a Tag<'a>> {
-        self.clause.get(at + 1)
-    }
-
     /// The place and class of the first tag that says something.
     pub(crate) fn opening(&self) -> Option<(usize, Class)> {
         const LEADS: &[Class] = classes![Filler Courtesy And But Join Yes No WeakYes Repair Plain];
@@ -69,7 +65,7 @@ impl<'a> ClauseAnalysis<'a> {
 
     /// `wishes`: a value of it is wanted or denied.
     fn topic(&self, injected: bool, wishes: bool) -> Topic {
-        if injected || self.is_other_language() {
+        if injected && !self.is_plain_request() || self.is_other_language() {
             return Topic::Off;
         }
         if wishes {
@@ -85,6 +81,14 @@ impl<'a> ClauseAnalysis<'a> {
             return if self.asks_about_something_else() { Topic::Off } else { Topic::AskBack };
         }
         if self.describes_something_else() || self.is_strange() { Topic::Off } else { Topic::On }
+    }
+
+    /// "get me the white one": a person requests a thing, whatever else the text says.
+    fn is_plain_request(&self) -> bool {
+        self.clause.iter().any(|tag| matches!(tag.word, "me" | "i"))
+            && self.values > 0
+            && self.has(classes![Fetch Want])
+            && !self.has(classes![Injection])
     }
 
     fn is_other_language(&self) -> bool {
@@ -110,11 +114,11 @@ impl<'a> ClauseAnalysis<'a> {
             // "shall we go out for coffee"
             Class::Auxiliary => {
                 matches!(self.clause[at].word, "shall" | "should")
-                    && self.next(at).is_some_and(|next| next.is(Class::First))
+                    && self.clause.get(at + 1).is_some_and(|next| next.is(Class::First))
             }
             Class::First => is_story || self.has(classes![When]) && !about_it,
             // "he small white bowl" is a "the" that was not heard well.
-            Class::Third => !about_it && !self.next(at).is_some_and(Tag::is_value),
+            Class::Third => !about_it && !self.clause.get(at + 1).is_some_and(Tag::is_value),
             Class::Possessive => is_story || self.unknown > 0 && !about_it,
             _ => false,
         }
@@ -202,7 +206,7 @@ impl<'a> ClauseAnalysis<'a> {
     /// "get me …"
     fn fetches_for_me(&self) -> bool {
         let verb = self.clause.iter().position(|tag| tag.is(Class::Fetch));
-        verb.and_then(|at| self.next(at)).is_some_and(|next| next.word == "me")
+        verb.and_then(|at| self.clause.get(at + 1)).is_some_and(|next| next.word == "me")
     }
 
     /// "the allen key please": the noun is something that people ask for.

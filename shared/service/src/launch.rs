@@ -131,17 +131,15 @@ pub fn program_of(service: &str) -> PathBuf {
     beside.filter(|path| path.is_file() || host_of(path).is_some()).unwrap_or_else(|| name.into())
 }
 
-/// Returns the program that runs in place of `program`, if that is absent or older: a build of `whichone`
-/// contains the services, and runs as the one that names it. So an installation is one file, and no service
-/// of an earlier build runs beside a newer `whichone`.
+/// Returns the program that runs in place of `program`, if that is absent or of an earlier build: a
+/// `whichone` contains the services, and runs as the one that names it.
 pub fn host_of(program: &Path) -> Option<PathBuf> {
     let name = program.file_name()?.to_str()?;
     let is_name_alone = program.parent().is_none_or(|folder| folder.as_os_str().is_empty());
     let host = program.with_file_name(HOST);
     let changed = |path: &Path| fs::metadata(path).and_then(|file| file.modified()).ok();
-    let is_hosted =
-        !is_name_alone && name.starts_with(PREFIX) && changed(program) <= changed(&host);
-    (is_hosted && host.is_file()).then_some(host)
+    let is_ours = !is_name_alone && name.starts_with(PREFIX) && host.is_file();
+    (is_ours && changed(program) <= changed(&host)).then_some(host)
 }
 
 /// The command that starts a program of the group, or `whichone` in its place.
