@@ -122,14 +122,9 @@ impl Conversation {
     /// Polls until the policy has published or a timeout has passed: the first utterance needs
     /// the state before it.
     pub(super) fn first_look(&mut self) -> Result<(), Failure> {
-        self.look_for(|latest| latest.view.is_some())
-    }
-
-    /// As [`Conversation::first_look`], until `is_known`.
-    fn look_for(&mut self, is_known: impl Fn(&Latest) -> bool) -> Result<(), Failure> {
         let (until, mut polling) = (Instant::now() + FIRST_PATIENCE, Polling::default());
         self.look()?;
-        while Instant::now() < until && !is_known(&self.latest) {
+        while Instant::now() < until && self.latest.view.is_none() {
             polling.pause();
             self.look()?;
         }
@@ -202,11 +197,21 @@ impl Conversation {
     }
 }
 
-/// Returns what a running group states at the moment, once `is_known` or a second has passed.
-pub(super) fn glance(paths: &GroupPaths, is_known: impl Fn(&Latest) -> bool) -> Option<Latest> {
-    let mut conversation = Conversation::join(paths).ok()?;
-    conversation.look_for(is_known).ok()?;
-    Some(conversation.latest)
+/// Returns what policy and speech of a running group state, without its scene: that takes longer to read.
+pub(super) fn glance(paths: &GroupPaths) -> Option<Latest> {
+    let client = Client::join(paths).ok()?;
+    let views = client.bus().encoded_reader(&topics::VIEW).ok()?;
+    let presented = client.bus().reader(&topics::PRESENTED).ok()?;
+    let hearing = client.bus().reader(&topics::HEARING).ok()?;
+    let (until, mut polling) = (Instant::now() + FIRST_PATIENCE, Polling::default());
+    let mut latest = Latest::default();
+    while (latest.view.is_none() || latest.hearing.is_none()) && Instant::now() < until {
+        polling.pause();
+        latest.presented = quiet(presented.latest()).unwrap_or(latest.presented);
+        latest.hearing = quiet(hearing.latest()).or(latest.hearing);
+        latest.view = quiet(views.latest()).or(latest.view);
+    }
+    Some(latest)
 }
 
 fn ended(paths: &GroupPaths) -> Failure {

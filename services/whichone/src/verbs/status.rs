@@ -10,7 +10,7 @@ use service::exit::Exit;
 use service::group::{GroupName, GroupPaths};
 use service::launch;
 use service::status::{GroupState, GroupStatus, ServiceState, ServiceStatus};
-use service::view::{HearingView, Latest};
+use service::view::HearingView;
 
 use super::conversation::glance;
 use super::operate::status_of;
@@ -23,9 +23,7 @@ pub(super) fn status(paths: &GroupPaths, out: &mut Output<'_>) -> Outcome {
         Err(CallError::NoGroup(_)) => return down(paths, out),
         Err(other) => return Err(other.into()),
     };
-    // Policy and speech state theirs each by itself.
-    let is_known = |latest: &Latest| latest.view.is_some() && latest.hearing.is_some();
-    let latest = glance(paths, is_known).unwrap_or_default();
+    let latest = glance(paths).unwrap_or_default();
     let hearing = latest.hearing;
     if out.is_json() {
         out.json(&Printed {
