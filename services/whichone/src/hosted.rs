@@ -1,10 +1,9 @@
-//! The other programs of the group, which run in here unless they have a newer file of their own: an installed
-//! `whichone` is a whole group.
+//! The other programs of the group, which run in here where they have no file of their own. An installed
+//! `whichone` is so a whole group; in a build folder each service has its program.
 
 use std::ffi::CString;
-use std::os::unix::process::CommandExt as _;
 use std::path::Path;
-use std::process::{Command, ExitCode};
+use std::process::ExitCode;
 
 use command_line::output::print_error;
 use messages::{SUPERVISOR, Service};
@@ -19,12 +18,10 @@ pub(crate) fn run() -> Option<ExitCode> {
     let started_as = std::env::args_os().next()?;
     let started_as = Path::new(&started_as).file_name()?.to_str()?.to_owned();
     let name = started_as.strip_prefix(PREFIX)?;
-    let program = match program(name) {
-        Some(Ok(program)) => program,
-        other => {
-            let missing = || Some(parts::how_to_get(name, other?.err()?));
-            let error = become_file(&started_as).or_else(missing)?;
-            print_error(&Failure::new(Exit::Config, error));
+    let program = match program(name)? {
+        Ok(program) => program,
+        Err(feature) => {
+            print_error(&Failure::new(Exit::Config, parts::how_to_get(name, feature)));
             return Some(Exit::Config.code());
         }
     };
@@ -33,16 +30,6 @@ pub(crate) fn run() -> Option<ExitCode> {
         let _ = rustix::thread::set_name(&name);
     }
     Some(program())
-}
-
-/// Becomes the program that this build is without, if it has a file. Returns only if that fails, with the error.
-fn become_file(program: &str) -> Option<String> {
-    let own = std::env::current_exe().ok()?;
-    let file = own.with_file_name(program).canonicalize().ok()?;
-    // A link to this file, as packages have them, would start it for ever.
-    let start = || Command::new(&file).args(std::env::args_os().skip(1)).exec();
-    let error = (file != own).then(start)?;
-    Some(format!("{}: {error}", file.display()))
 }
 
 /// Optional features that are compiled in, by the names that `cargo install --features` takes.

@@ -86,7 +86,7 @@ impl ClauseAnalysis<'_> {
 
     /// "which ones are white", but not "what I want" or "what a mess".
     fn is_question(&self, at: usize) -> bool {
-        let next = self.clause.get(at + 1);
+        let next = self.next(at);
         let relative = next.is_some_and(|next| {
             next.is_any(classes![First Possessive Yes No]) || matches!(next.word, "a" | "an")
         });

@@ -70,10 +70,10 @@ fn starts_clause(tags: &[Tag<'_>], at: usize) -> bool {
         Some(Class::But) => true,
         Some(Class::And) => next.is_some_and(|next| next.is_any(SUBJECTS) || next.is_unknown()),
         // "yes my hands are full", "no get me the red one", "forget it I found one"
-        Some(Class::First | Class::Fetch | Class::Want | Class::Possessive | Class::It) => before
-            .is_any(classes![
-                Yes No WeakYes WeakNo Repair Withdraw Cancel
-            ]),
+        Some(Class::First | Class::Fetch | Class::Want | Class::Possessive | Class::It) => {
+            before.is_any(classes![Yes No WeakYes WeakNo Repair Withdraw])
+                || before.is(Class::Cancel) && before.word != "not"
+        }
         _ => false,
     }
 }

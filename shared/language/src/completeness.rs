@@ -80,6 +80,8 @@ impl CompletenessJudge {
         let names_asked = is_described && candidates > 0 && self.answers(reading, question);
         let ends_in_noun = tags.last().is_some_and(ends_noun_phrase);
         let is_asked = question != Question::None;
+        // "I don't know", "I don't care".
+        let is_unsure = tags.last().is_some_and(|it| it.is_any(classes![Unsure Indifferent]));
         match reading.response {
             Response::Yes if is_asked && (!is_described || candidates > 0) => {
                 Completeness::Complete
@@ -87,7 +89,7 @@ impl CompletenessJudge {
             // "No": a correction may follow.
             Response::No if is_asked && !names_asked && !is_unique => Completeness::Sufficient,
             _ if names_asked || is_unique && ends_in_noun => Completeness::Complete,
-            _ if is_asked && !is_described && is_unsure(tags) => Completeness::Complete,
+            _ if is_asked && !is_described && is_unsure => Completeness::Complete,
             _ if ends_in_noun && candidates > 0 => Completeness::Sufficient,
             _ => Completeness::Unclear,
         }
@@ -147,11 +149,6 @@ fn begins_statement(words: &[&str], tags: &[Tag<'_>]) -> bool {
 /// Returns whether a description can end here: with its noun or its place.
 fn ends_noun_phrase(last: &Tag<'_>) -> bool {
     last.is_any(classes![Head One]) || last.is_value() && !last.is_role(Role::Quality)
-}
-
-/// "I don't know", "I don't care".
-fn is_unsure(tags: &[Tag<'_>]) -> bool {
-    tags.last().is_some_and(|last| last.is_any(classes![Unsure Indifferent]))
 }
 
 #[cfg(test)]

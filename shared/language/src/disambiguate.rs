@@ -23,26 +23,24 @@ pub(crate) fn disambiguate<'a>(lexicon: &'a Lexicon, tags: &mut [Tag<'a>]) {
     }
 }
 
-/// Resolves what a question about a value decides, if nothing else is said: "it isn't any more" denies it
-/// and cancels nothing, and "that's white" tells as much as "it's white".
-pub(crate) fn resolve_after_question(tags: &mut Vec<Tag<'_>>) {
-    const LEADS: &[Class] = classes![Filler Hedge Yes WeakYes It Be Plain];
-    let shows = |tag: &Tag<'_>| matches!(tag.word, "that" | "this");
-    let Some(at) = tags.iter().position(|tag| shows(tag) || !tag.is_any(LEADS)) else { return };
-    let (tag, noun) = (tags[at], tags.get(at + 1).is_some_and(|next| next.is(Class::Head)));
-    let rest = at + 1 + usize::from(noun);
-    if tag.is(Class::Cancel) && tag.word == "not" && matches!(tag.second, "any" | "anymore") {
-        let is_all = rest == tags.len();
-        tags[at].sense = if is_all { Sense::Class(Class::WeakNo) } else { tag.sense };
-    } else if let [be, value, ends @ ..] = &tags[rest..]
-        && shows(&tag)
-        && matches!(tag.last, "that" | "this" | "one")
-        && (be.is(Class::Be) && value.is_value())
+/// Resolves words whose meaning depends on the question just asked about a value, if nothing else is said:
+/// "it isn't any more" denies it and cancels nothing, and "that's white" means "it's white".
+pub(crate) fn resolve_after_question(tags: &mut [Tag<'_>]) {
+    const LEADS: &[Class] = classes![Filler Hedge It Be Plain];
+    let Some(at) = tags.iter().position(|tag| !tag.is_any(LEADS)) else { return };
+    let (tag, rest) = (tags[at], &tags[at + 1..]);
+    if let [be, value, ends @ ..] = rest
+        && matches!(tag.word, "that" | "this")
+        && tag.is_any(classes![Pointer WeakYes])
+        && (tag.second == tag.last && be.is(Class::Be) && value.is_value())
         && ends.iter().all(|tag| tag.is_any(classes![Filler Courtesy]))
     {
         let sense = Sense::Class(Class::It);
         tags[at] = Tag { sense, word: "it", second: "it", last: "it", ..tag };
-        tags.drain(at + 1..rest);
+    } else if tag.is(Class::Cancel)
+        && (rest.is_empty() && tag.word == "not" && matches!(tag.second, "any" | "anymore"))
+    {
+        tags[at].sense = Sense::Class(Class::WeakNo);
     }
 }
 
@@ -109,17 +107,22 @@ impl<'a> Place<'_, 'a> {
     /// The class that the word has here: `None` as listed, `Some(None)` that of an unknown word.
     fn resolved_class(&self) -> Option<Option<Class>> {
         let tag = self.tag();
+        let is_determined = || self.before().is_some_and(|before| before.is(Class::Determiner));
         let class = match (tag.class(), tag.word) {
             (None, _) if self.is_asking_verb() => Some(Class::Auxiliary),
             (None, _) => self.is_participle().then_some(Class::Plain),
             (Some(Class::One), _) => {
                 Some(if self.is_noun_one() { Class::Head } else { Class::Plain })
             }
-            (Some(Class::OtherLanguage), "non") => self.is_prefix().then_some(Class::Not),
+            // "non-metal" in English, "non merci" in French.
+            (Some(Class::OtherLanguage), "non") => {
+                self.after().is_some_and(Tag::is_value).then_some(Class::Not)
+            }
             (Some(Class::But), _) => self.is_exception().then_some(Class::Except),
             (Some(Class::Join), "so") => self.is_degree().then_some(Class::Plain),
             (Some(Class::Preposition), "as") => self.comparison(),
-            (Some(Class::Courtesy), _) if self.is_named_thing() => return Some(None),
+            // "the honey please": a thing, not a form of address for the robot.
+            (Some(Class::Courtesy), _) if is_determined() => return Some(None),
             (Some(Class::SideTalk), _) => self.is_pause_to_think().then_some(Class::Repair),
             (Some(Class::Put), "leave") => self.leaves_out().then_some(Class::Except),
             _ => None,
@@ -145,11 +148,6 @@ impl<'a> Place<'_, 'a> {
         self.before().is_some_and(|b| b.is_value() || b.is_unknown() || b.is_any(BEFORE))
     }
 
-    /// "non-metal" in English, "non merci" in French.
-    fn is_prefix(&self) -> bool {
-        self.after().is_some_and(Tag::is_value)
-    }
-
     /// "any bowl but the white one".
     fn is_exception(&self) -> bool {
         let any = |tag: &Tag<'_>| matches!(tag.word, "any" | "every" | "all" | "anyone");
@@ -168,11 +166,6 @@ impl<'a> Place<'_, 'a> {
             return Some(Class::Plain);
         }
         self.recent(1).iter().any(Tag::is_value).then_some(Class::Than)
-    }
-
-    /// "the honey please": a thing, not a form of address for the robot.
-    fn is_named_thing(&self) -> bool {
-        self.before().is_some_and(|before| before.is(Class::Determiner))
     }
 
     /// "the clear one, hang on, the white one": after a pause to think, earlier words are replaced.

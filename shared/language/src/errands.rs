@@ -10,15 +10,11 @@ impl ClauseAnalysis<'_> {
     /// An errand with strange things, or with nothing but places.
     pub(crate) fn is_unrelated_errand(&self) -> bool {
         let places = self.clause.iter().filter(|tag| tag.is_role(Role::Place)).count();
-        self.is_errand() && (self.unknown > 0 || self.values == places) && !self.has(classes![Head])
+        let is_strange = self.unknown > 0 || self.values == places;
+        self.errand().is_some() && is_strange && !self.has(classes![Head])
     }
 
-    /// "put it on the table", "empty the dishwasher": an order, but not to fetch.
-    pub(crate) fn is_errand(&self) -> bool {
-        self.errand().is_some()
-    }
-
-    /// Place of the verb of an errand.
+    /// Place of the verb of an order that is none to fetch: "put it on the table", "empty the dishwasher".
     fn errand(&self) -> Option<usize> {
         const OBJECTS: &[Class] = classes![Determiner Possessive It Pointer];
         let orders = |&at: &usize| {
@@ -36,10 +32,7 @@ impl ClauseAnalysis<'_> {
             });
             // "clear the"
             let has_object = matches!(tag.word, "clear" | "break")
-                || self
-                    .clause
-                    .get(at + 1)
-                    .is_some_and(|next| next.is_any(OBJECTS) || next.is_unknown());
+                || self.next(at).is_some_and(|next| next.is_any(OBJECTS) || next.is_unknown());
             (tag.is(Class::Put) && !self.brings_at(at) || self.throws_away(at))
                 && has_object
                 && !is_noun
@@ -69,7 +62,7 @@ impl ClauseAnalysis<'_> {
         let is_elsewhere =
             before.is_some_and(|it| matches!(it.word, "for" | "from" | "out" | "off"));
         let is_led = before.is_some_and(|it| it.is_any(LEADS));
-        let is_known = self.clause.get(at + 1).is_some_and(|next| next.is_role(Role::Place));
+        let is_known = self.next(at).is_some_and(|next| next.is_role(Role::Place));
         let is_here = match tag.word {
             "me" | "us" => is_led,
             "my" | "our" => is_led && !is_known,

@@ -113,7 +113,7 @@ fn is_determiner(tag: &Tag<'_>) -> bool {
 }
 
 fn noun(phrase: &[Tag<'_>]) -> Noun {
-    if phrase.iter().any(|tag| is_kind_tag(tag)) {
+    if phrase.iter().any(|tag| tag.is_role(Role::Kind)) {
         return Noun::Named;
     }
     match phrase.iter().find(|tag| tag.is(Class::Head)) {
@@ -121,10 +121,6 @@ fn noun(phrase: &[Tag<'_>]) -> Noun {
         Some(_) => Noun::Named,
         None => Noun::None,
     }
-}
-
-fn is_kind_tag(tag: &Tag<'_>) -> bool {
-    tag.is_role(Role::Kind)
 }
 
 /// Puts the parts of one object together again. `answers`: in answer to a question, where "white

@@ -56,6 +56,10 @@ impl<'a> ClauseAnalysis<'a> {
         self.clause.iter().any(|tag| tag.is_any(classes))
     }
 
+    pub(crate) fn next(&self, at: usize) -> Option<&'a Tag<'a>> {
+        self.clause.get(at + 1)
+    }
+
     /// The place and class of the first tag that says something.
     pub(crate) fn opening(&self) -> Option<(usize, Class)> {
         const LEADS: &[Class] = classes![Filler Courtesy And But Join Yes No WeakYes Repair Plain];
@@ -107,21 +111,29 @@ impl<'a> ClauseAnalysis<'a> {
         if self.has(classes![Fetch Want]) {
             return false;
         }
-        let about_it = self.has(classes![It]) || self.confirms();
+        let about_it = self.has(classes![It]) || self.has_the_one() || self.confirms();
         let is_story = self.has(classes![Story]) && !about_it;
         match opening {
             Class::Story | Class::When => !about_it,
             // "shall we go out for coffee"
             Class::Auxiliary => {
                 matches!(self.clause[at].word, "shall" | "should")
-                    && self.clause.get(at + 1).is_some_and(|next| next.is(Class::First))
+                    && self.next(at).is_some_and(|next| next.is(Class::First))
             }
             Class::First => is_story || self.has(classes![When]) && !about_it,
             // "he small white bowl" is a "the" that was not heard well.
-            Class::Third => !about_it && !self.clause.get(at + 1).is_some_and(Tag::is_value),
-            Class::Possessive => is_story || self.unknown > 0 && !about_it,
+            Class::Third => !about_it && !self.next(at).is_some_and(Tag::is_value),
+            // "my bowl is the white one" is about the bowl.
+            Class::Possessive => {
+                is_story || self.unknown > 0 && !about_it && !self.owns_ours(at + 1)
+            }
             _ => false,
         }
+    }
+
+    /// Returns whether the clause is about "one" or "ones".
+    fn has_the_one(&self) -> bool {
+        self.clause.iter().any(|tag| tag.is(Class::Head) && tag.word.starts_with("one"))
     }
 
     /// "that's the one" and the like, whatever story follows.
@@ -130,12 +142,31 @@ impl<'a> ClauseAnalysis<'a> {
         self.clause.iter().any(|tag| tag.is_any(classes![Yes WeakYes No]) && shown(tag))
     }
 
+    /// "my bowl", "my silk shirt": the word here, or the phrase's last noun, names one of ours.
+    fn owns_ours(&self, at: usize) -> bool {
+        let Some(owned) = self.clause.get(at) else { return false };
+        let phrase = self.clause[at..].iter().enumerate().take_while(|(n, tag)| {
+            (*n == 0 || !tag.pauses()) && (tag.is_unknown() || tag.is_value())
+        });
+        owned.is_any(SCENE_NAMES)
+            || owned.is_value()
+            || phrase.last().is_some_and(|(_, noun)| noun.is_role(Role::Kind))
+    }
+
+    /// "my glass is empty": a thing of the kind, but not one of ours.
+    fn owns_unlisted(&self) -> bool {
+        let mut pairs = self.clause.windows(2);
+        pairs.any(|pair| pair[0].is(Class::Possessive) && pair[1].is(Class::Unlisted))
+    }
+
     /// "my shirt is white": it says nothing about our things, and requests nothing.
     fn describes_something_else(&self) -> bool {
         // "wrong spoon", "too big"
         let is_refused =
             |at| is_wrong_thing(self.clause, at) || too_much(self.clause, at).is_some();
-        let wished = self.has(classes![Fetch Unlisted]) || (0..self.clause.len()).any(is_refused);
+        let wished = self.has(classes![Fetch])
+            || self.has(classes![Unlisted]) && !self.owns_unlisted()
+            || (0..self.clause.len()).any(is_refused);
         self.values > 0 && !self.has(SCENE_NAMES) && !wished
     }
 
@@ -144,9 +175,16 @@ impl<'a> ClauseAnalysis<'a> {
         let elsewhere = self.unknown > 0 && self.has(classes![Unlisted]) && self.has(classes![Be]);
         let tied = self.has(SCENE_NAMES)
             || self.has(classes![Fetch It])
+            || self.points()
             || self.is_bare_noun()
             || self.denies_by_far();
         (self.unknown > 1 || elsewhere) && !tied
+    }
+
+    /// Returns whether the words point, as "that one", but not "this phone".
+    fn points(&self) -> bool {
+        let mut tags = self.clause.iter().enumerate();
+        tags.any(|(at, tag)| tag.is(Class::Pointer) && !self.next(at).is_some_and(Tag::is_unknown))
     }
 
     /// "the wok please", "the pepper on the shelf": all that is said names one thing.
@@ -169,11 +207,17 @@ impl<'a> ClauseAnalysis<'a> {
                 [not, how, ..] if not.is(Class::Not) && how.is(Class::Preposition))
     }
 
+    /// Only parts of a noun phrase: "blue", "the green one".
+    fn is_fragment(&self) -> bool {
+        !self.has(classes![Fetch Want Be Auxiliary First Second It Yes No Repair])
+    }
+
     /// Returns whether the clause names something to fetch.
     fn requests(&self) -> bool {
         let named = self.has(classes![Head Attribute Unlisted Ordinal Other Pointer]);
         self.has(SCENE_NAMES)
-            || self.has(classes![Unlisted]) && (self.unknown == 0 || self.ends_unlisted())
+            || self.has(classes![Unlisted])
+                && (self.unknown == 0 || self.is_fragment() && self.ends_unlisted())
             || self.has(classes![Fetch Want]) && named
             || self.wants_unknown()
             || self.is_unknown_please()
@@ -206,7 +250,7 @@ impl<'a> ClauseAnalysis<'a> {
     /// "get me …"
     fn fetches_for_me(&self) -> bool {
         let verb = self.clause.iter().position(|tag| tag.is(Class::Fetch));
-        verb.and_then(|at| self.clause.get(at + 1)).is_some_and(|next| next.word == "me")
+        verb.and_then(|at| self.next(at)).is_some_and(|next| next.word == "me")
     }
 
     /// "the allen key please": the noun is something that people ask for.

@@ -3,7 +3,7 @@
 use messages::SUPERVISOR;
 use std::env;
 use std::ffi::OsString;
-use std::fs::{self, File, TryLockError};
+use std::fs::{File, TryLockError};
 use std::io::{self, Read};
 use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
@@ -131,15 +131,14 @@ pub fn program_of(service: &str) -> PathBuf {
     beside.filter(|path| path.is_file() || host_of(path).is_some()).unwrap_or_else(|| name.into())
 }
 
-/// Returns the program that runs in place of `program`, if that is absent or of an earlier build: a
-/// `whichone` contains the services, and runs as the one that names it.
+/// Returns the program that runs in place of `program`, if that is absent: a build of `whichone`
+/// contains the services, and runs as the one that names it. So an installation is one file.
 pub fn host_of(program: &Path) -> Option<PathBuf> {
     let name = program.file_name()?.to_str()?;
     let is_name_alone = program.parent().is_none_or(|folder| folder.as_os_str().is_empty());
     let host = program.with_file_name(HOST);
-    let changed = |path: &Path| fs::metadata(path).and_then(|file| file.modified()).ok();
-    let is_ours = !is_name_alone && name.starts_with(PREFIX) && host.is_file();
-    (is_ours && changed(program) <= changed(&host)).then_some(host)
+    let is_hosted = !is_name_alone && name.starts_with(PREFIX) && !program.exists();
+    (is_hosted && host.is_file()).then_some(host)
 }
 
 /// The command that starts a program of the group, or `whichone` in its place.
@@ -277,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn absent_or_older_program_of_the_group_is_run_by_the_one_beside_it() {
+    fn absent_program_of_the_group_is_run_by_the_one_beside_it() {
         let folder = tempfile::tempdir().unwrap();
         let file = |name: &str| folder.path().join(name);
         let words = |program: &Path| format!("{:?}", command(program));
@@ -292,19 +291,7 @@ mod tests {
             assert_eq!(host_of(&file(other)), None, "{other}");
         }
         std::fs::write(file("whichone-arm"), "").unwrap();
-        let built = |name: &str, minute: u64| {
-            let time = std::time::UNIX_EPOCH + Duration::from_secs(60 * minute);
-            fs::File::options().append(true).open(file(name)).unwrap().set_modified(time).unwrap();
-        };
-        built("whichone", 1);
-        built("whichone-arm", 2);
         assert_eq!(host_of(&file("whichone-arm")), None, "it runs by its own file");
-        built("whichone", 3);
-        assert_eq!(
-            host_of(&file("whichone-arm")),
-            Some(file("whichone")),
-            "it is of a build before"
-        );
         assert_eq!(host_of(Path::new("whichone-arm")), None, "a name is looked up in PATH");
     }
 }

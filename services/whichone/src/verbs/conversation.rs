@@ -197,15 +197,16 @@ impl Conversation {
     }
 }
 
-/// Returns what policy and speech of a running group state, without its scene: that takes longer to read.
-pub(super) fn glance(paths: &GroupPaths) -> Option<Latest> {
+/// Returns what policy and speech of a running group state, once `is_known` or a second has passed. Its
+/// scene, which takes longer to read, is left out.
+pub(super) fn glance(paths: &GroupPaths, is_known: impl Fn(&Latest) -> bool) -> Option<Latest> {
     let client = Client::join(paths).ok()?;
     let views = client.bus().encoded_reader(&topics::VIEW).ok()?;
     let presented = client.bus().reader(&topics::PRESENTED).ok()?;
     let hearing = client.bus().reader(&topics::HEARING).ok()?;
     let (until, mut polling) = (Instant::now() + FIRST_PATIENCE, Polling::default());
     let mut latest = Latest::default();
-    while (latest.view.is_none() || latest.hearing.is_none()) && Instant::now() < until {
+    while !is_known(&latest) && Instant::now() < until {
         polling.pause();
         latest.presented = quiet(presented.latest()).unwrap_or(latest.presented);
         latest.hearing = quiet(hearing.latest()).or(latest.hearing);

@@ -16,6 +16,7 @@ use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 use service::printable::one_line;
 use service::submission::Submission;
+use service::view::Latest;
 use service::{Span, Time};
 use vocabulary::PersonId;
 
@@ -60,8 +61,9 @@ pub(super) fn say(paths: &GroupPaths, args: &SayArgs, out: &mut Output<'_>) -> O
 
 /// Fails for a prompt that is not known to have been said: the speech service would wait for it.
 fn must_be_said(paths: &GroupPaths, seen: PromptId) -> Result<(), Failure> {
-    let is_ahead = |latest: &service::view::Latest| latest.view.is_some() && latest.prompt() < seen;
-    let Some(latest) = glance(paths).filter(is_ahead) else { return Ok(()) };
+    let latest = glance(paths, |latest| latest.view.is_some());
+    let is_ahead = |latest: &Latest| latest.view.is_some() && latest.prompt() < seen;
+    let Some(latest) = latest.filter(is_ahead) else { return Ok(()) };
     let what = format!("--seen: expected a line that was said, up to {}", latest.prompt());
     Err(Failure::new(Exit::Usage, format!("{what}, found {seen}; help: leave it out")))
 }

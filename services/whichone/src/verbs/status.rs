@@ -23,7 +23,8 @@ pub(super) fn status(paths: &GroupPaths, out: &mut Output<'_>) -> Outcome {
         Err(CallError::NoGroup(_)) => return down(paths, out),
         Err(other) => return Err(other.into()),
     };
-    let latest = glance(paths).unwrap_or_default();
+    // Policy and speech state theirs each by itself.
+    let latest = glance(paths, |it| it.view.is_some() && it.hearing.is_some()).unwrap_or_default();
     let hearing = latest.hearing;
     if out.is_json() {
         out.json(&Printed {
