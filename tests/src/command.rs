@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
+use service::launch::host_of;
+
 /// A command that has ended.
 #[derive(Debug)]
 pub struct Ended {
@@ -26,7 +28,7 @@ impl Ended {
     }
 }
 
-/// Returns the path of a program of the group in this build.
+/// Returns the path of a program of the group in this build; `whichone` may run in its place.
 ///
 /// # Panics
 /// If it is not built: `cargo build --workspace` does that, and `scripts/test` does it first.
@@ -37,8 +39,8 @@ pub fn program(name: &str) -> PathBuf {
 /// As [`program`]; none if it is not built.
 pub(crate) fn find_program(name: &str) -> Option<PathBuf> {
     let test = std::env::current_exe().expect("the test's own path");
-    let folder = test.ancestors().find(|folder| folder.join(name).is_file());
-    folder.map(|folder| folder.join(name))
+    let mut paths = test.ancestors().map(|folder| folder.join(name));
+    paths.find(|path| path.is_file() || host_of(path).is_some())
 }
 
 /// Returns `command`, run by a shell that does `first` before: a limit or a mask of that process alone.

@@ -308,11 +308,7 @@ impl Group {
 
     /// Has something happen to the simulated robot, or to the objects on its table.
     pub fn drill(&self, words: &[&str]) {
-        let mut command = Command::new(program("whichone-baxter"));
-        command.env("WHICHONE_HOME", self.paths.home());
-        command.env(ENV_GROUP, self.paths.name().as_str());
-        let ended = run(command.args(words), "", CALL_S);
-        assert_eq!(ended.code, Some(0), "{words:?}: {ended:?}");
+        self.must(&[&["baxter"], words].concat());
     }
 
     /// Checks the journals as an operator would.

@@ -102,7 +102,7 @@ impl Relay {
 
 /// Returns whether `scripts/link` has built the link's programs.
 pub fn is_built() -> bool {
-    find_program("whichone-link").is_some()
+    find_program("whichone-link").is_some_and(|path| path.is_file())
 }
 
 /// A peer with these keys that sends nonsense to a robot or in its name, for some seconds

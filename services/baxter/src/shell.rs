@@ -21,7 +21,7 @@ impl Program for BaxterProgram {
     const SERVICE: Service = Service::Robot;
     const RECORD: Option<&'static str> = Some("baxter/3");
     const ABOUT: &'static str = "a simulated Baxter behind the robot's own topics\n\n\
-         whichone-baxter DRILL has something happen to the one in $WHICHONE_GROUP:\n  \
+         whichone baxter DRILL has something happen to the one of the group:\n  \
          enable, disable, reset, press-estop, release-estop, fail,\n  \
          silence SECONDS, miss GRASPS, obstruct SECONDS,\n  \
          put OBJECT X Y [Z [YAW]] (a person puts an object there, metres and radians; on the table without Z),\n  \

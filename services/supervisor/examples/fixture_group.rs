@@ -1,6 +1,6 @@
 //! A supervisor for tests: the real one, with a group that a small JSON file describes.
 //!
-//! Arguments: the group's name and the file.
+//! Arguments: the group's name and the file. With options instead, the program that `whichone up` starts.
 
 #![expect(clippy::unwrap_used, reason = "a fixture fails loudly")]
 
@@ -58,6 +58,9 @@ fn ten_seconds() -> u64 {
 }
 
 fn main() -> ExitCode {
+    if std::env::args().nth(1).is_none_or(|first| first.starts_with("--")) {
+        return supervisor::cli::run();
+    }
     let _log = service::logging::init();
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let paths = GroupPaths::resolve(&GroupName::new(&arguments[0]).unwrap()).unwrap();

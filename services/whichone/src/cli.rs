@@ -11,7 +11,7 @@ use service::group::{ENV_GROUP, GroupName};
 
 mod group;
 mod headings;
-mod link;
+mod other_program;
 mod people;
 mod talk;
 
@@ -20,7 +20,7 @@ pub use group::{
     ConsoleArgs, DownArgs, ReloadArgs, RestartArgs, ServiceArgs, StopArgs, SwapArgs, UpArgs,
     WaitFor,
 };
-pub use link::LinkArgs;
+pub use other_program::OtherProgramArgs;
 pub use people::{PeopleArgs, PeopleVerb};
 pub use talk::{AwaitArgs, Awaited, ChatArgs, JournalAction, JournalArgs, ListenArgs};
 pub use talk::{MotionArgs, PointArgs, SayArgs, TalkArgs, WatchArgs};
@@ -235,17 +235,22 @@ pub enum Verb {
     ///
     /// `whichone link --help` lists the arguments. Requires the program whichone-link (docs/remote.md).
     #[command(disable_help_flag = true)]
-    Link(LinkArgs),
+    Link(OtherProgramArgs),
     /// List the robots that are connected to the router.
     ///
     /// Requires the program whichone-link (docs/remote.md).
     #[command(disable_help_flag = true)]
-    Fleet(LinkArgs),
+    Fleet(OtherProgramArgs),
     /// Serve the pages of many robots under one address, with people's rights and an audit.
     ///
     /// `whichone gateway --help` lists the arguments (docs/fleet.md).
     #[command(disable_help_flag = true)]
-    Gateway(LinkArgs),
+    Gateway(OtherProgramArgs),
+    /// Have something happen to the simulated Baxter, or to the objects on its table.
+    ///
+    /// `whichone baxter --help` lists the arguments (docs/baxter.md).
+    #[command(disable_help_flag = true)]
+    Baxter(OtherProgramArgs),
     /// Start or stop the recorder, list its recordings, or open one.
     Record {
         /// Action.

@@ -1,5 +1,5 @@
-//! The other programs of the group, which run in here where they have no file of their own. An installed
-//! `whichone` is so a whole group; in a build folder each service has its program.
+//! The other programs of the group, which run in here where they have no file of their own: one file is a whole group.
+//! Only the gateway is a program of its own, and the link where `whichone` is built without it.
 
 use std::ffi::CString;
 use std::path::Path;

@@ -21,10 +21,10 @@ mod init;
 mod inspection;
 mod leftovers;
 mod licences;
-mod link;
 mod listen;
 mod motion;
 mod operate;
+mod other_program;
 mod people;
 mod speak;
 mod status;
@@ -79,9 +79,10 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         Verb::ResumeMotion(args) => {
             motion::motion(&paths()?, MotionOrder::Resume, args.timeout, out)
         }
-        Verb::Link(args) => Err(link::link(&cli.common.group, args)),
-        Verb::Fleet(args) => Err(link::fleet(args, cli.common.json)),
-        Verb::Gateway(args) => Err(link::gateway(args)),
+        Verb::Link(args) => Err(other_program::link(&cli.common.group, args)),
+        Verb::Fleet(args) => Err(other_program::fleet(args, cli.common.json)),
+        Verb::Gateway(args) => Err(other_program::gateway(args)),
+        Verb::Baxter(args) => Err(other_program::baxter(&cli.common.group, args)),
         Verb::Record { what } => operate::recorder(&paths()?, what, out),
         Verb::Replay(args) => laboratory::replay(paths, &args, out),
         Verb::Scene { what } => laboratory::scene(what, out),

@@ -300,7 +300,7 @@ impl ArmDriver for BaxterDriver {
     }
 
     fn remedy_for_silence(&self) -> &'static str {
-        "start the robot's bridge or whichone-baxter; with one gripper only, set arm.limb"
+        "start the robot's bridge, or the simulated robot (profile baxter); with one gripper only, set arm.limb"
     }
 
     fn fault(&self) -> Option<Fault> {

@@ -39,8 +39,7 @@ impl Home {
     }
 
     fn launch(&self) -> Launched {
-        let program = Path::new(env!("CARGO_BIN_EXE_whichone-supervisor"));
-        detached(program, &self.options, &self.paths).unwrap()
+        detached(&fixture("fixture_group"), &self.options, &self.paths).unwrap()
     }
 
     fn up(&self) {

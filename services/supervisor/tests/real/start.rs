@@ -150,8 +150,8 @@ fn supervisor_notifies_an_init_system() {
 
 #[test]
 fn supervisor_program_prints_help() {
-    let program = env!("CARGO_BIN_EXE_whichone-supervisor");
-    let run = |words: &[&str]| std::process::Command::new(program).args(words).output().unwrap();
+    let program = fixture("fixture_group");
+    let run = |words: &[&str]| std::process::Command::new(&program).args(words).output().unwrap();
     let help = run(&["--help"]);
     assert!(help.status.success());
     assert!(String::from_utf8_lossy(&help.stdout).contains("--group"));

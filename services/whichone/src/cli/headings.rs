@@ -30,6 +30,7 @@ const HEADINGS: [(&str, &[&str]); 6] = [
             "link",
             "fleet",
             "gateway",
+            "baxter",
             "completions",
         ],
     ),

@@ -1,4 +1,4 @@
-//! The policy service.
+//! The policy service alone, for the tests of its inspections.
 
 use std::process::ExitCode;
 

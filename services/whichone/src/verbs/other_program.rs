@@ -1,4 +1,4 @@
-//! Hands over to the program whichone-link, which alone knows the network, and to whichone-gateway.
+//! Verbs that hand over to another program of the group: the link, the gateway, the simulated Baxter.
 
 use std::ffi::OsString;
 use std::io::ErrorKind;
@@ -8,35 +8,36 @@ use service::exit::{Exit, Failure};
 use service::group::{ENV_GROUP, GroupName};
 use service::launch;
 
-use crate::cli::LinkArgs;
+use crate::cli::OtherProgramArgs;
 
-/// Builds the program whichone-link.
+/// Builds the program whichone-link, which alone knows the network.
 const LINK_HELP: &str = "scripts/link build";
 
 /// `whichone link …`; returns only if that fails.
-pub(super) fn link(group: &GroupName, args: LinkArgs) -> Failure {
-    // Without arguments the program is a service.
-    let arguments = match args.arguments {
-        none if none.is_empty() => vec!["--help".into()],
-        some => some,
-    };
-    hand_over("link", LINK_HELP, arguments, Some(group))
+pub(super) fn link(group: &GroupName, args: OtherProgramArgs) -> Failure {
+    hand_over("link", LINK_HELP, or_help(args), Some(group))
 }
 
 /// `whichone fleet …`; returns only if that fails.
-pub(super) fn fleet(args: LinkArgs, json: bool) -> Failure {
+pub(super) fn fleet(args: OtherProgramArgs, json: bool) -> Failure {
     let json = json.then(|| OsString::from("--json"));
     let arguments = std::iter::once("fleet".into()).chain(args.arguments).chain(json);
     hand_over("link", LINK_HELP, arguments.collect(), None)
 }
 
 /// `whichone gateway …`; returns only if that fails.
-pub(super) fn gateway(args: LinkArgs) -> Failure {
-    let arguments = match args.arguments {
-        none if none.is_empty() => vec!["--help".into()],
-        some => some,
-    };
-    hand_over("gateway", "cargo build --release -p gateway", arguments, None)
+pub(super) fn gateway(args: OtherProgramArgs) -> Failure {
+    hand_over("gateway", "cargo build --release -p gateway", or_help(args), None)
+}
+
+/// `whichone baxter …`; returns only if that fails.
+pub(super) fn baxter(group: &GroupName, args: OtherProgramArgs) -> Failure {
+    hand_over("baxter", "cargo build --release", or_help(args), Some(group))
+}
+
+/// Without arguments the program would be a service.
+fn or_help(args: OtherProgramArgs) -> Vec<OsString> {
+    if args.arguments.is_empty() { vec!["--help".into()] } else { args.arguments }
 }
 
 fn hand_over(

@@ -1,7 +1,0 @@
-//! The arm service.
-
-use std::process::ExitCode;
-
-fn main() -> ExitCode {
-    arm::run::<drivers::Shipped>()
-}

@@ -1,5 +1,0 @@
-//! The simulated Baxter.
-
-fn main() -> std::process::ExitCode {
-    baxter::run()
-}

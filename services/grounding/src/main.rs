@@ -1,7 +1,0 @@
-//! The grounding service.
-
-use std::process::ExitCode;
-
-fn main() -> ExitCode {
-    grounding::run()
-}

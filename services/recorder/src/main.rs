@@ -1,7 +1,0 @@
-//! The recorder.
-
-use std::process::ExitCode;
-
-fn main() -> ExitCode {
-    recorder::run()
-}

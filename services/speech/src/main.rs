@@ -1,7 +1,0 @@
-//! The speech service.
-
-use std::process::ExitCode;
-
-fn main() -> ExitCode {
-    speech::run()
-}

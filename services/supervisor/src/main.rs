@@ -1,6 +1,0 @@
-//! `whichone-supervisor`: runs one group of services until it is stopped.
-
-fn main() -> std::process::ExitCode {
-    parts::register();
-    supervisor::cli::run()
-}
