@@ -61,13 +61,17 @@ fn follow(
     out: &mut Output<'_>,
 ) -> Result<(), Failure> {
     let (mut drawn, mut asked) = (None::<Instant>, Instant::now());
+    let mut prompt = model.latest().prompt();
     while !interrupt.is_requested() {
         model.look()?;
         if asked.elapsed() >= STATUS_EVERY {
             ask_supervisor(model);
             asked = Instant::now();
         }
-        if drawn.is_none_or(|drawn| drawn.elapsed() >= FRAME_EVERY) {
+        // Programs see each decision, however soon another one follows.
+        let is_new = !screen && model.latest().prompt() != prompt;
+        if is_new || drawn.is_none_or(|drawn| drawn.elapsed() >= FRAME_EVERY) {
+            prompt = model.latest().prompt();
             if screen {
                 out.text(&frame::redraw(
                     &frame::lines(model, out.style(), columns()),

@@ -4,13 +4,14 @@ use std::fs::File;
 use std::io::{self, ErrorKind};
 use std::os::unix::net::UnixDatagram;
 use std::os::unix::process::{CommandExt, ExitStatusExt};
-use std::path::PathBuf;
-use std::process::{Child, Command, ExitStatus, Stdio};
+use std::path::{Path, PathBuf};
+use std::process::{Child, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
 use rustix::process::{Pid, Signal, kill_process_group};
 use service::exit::{Exit, Failure, ProcessExit};
-use service::group;
+use service::program::find_program;
+use service::{group, launch};
 
 use super::bench::{Bench, EPOCH};
 
@@ -50,7 +51,9 @@ impl Subject {
         let open = File::options().create(true).append(true).open(&log);
         let open = open.map_err(|error| Failure::file(&log, &error))?;
         let log = open.try_clone().map_err(|error| Failure::file(&log, &error))?;
-        let child = Command::new(program(&command[0]))
+        let program = find_program(command, Path::new("."))
+            .map_err(|error| Failure::new(Exit::Usage, error.to_string()))?;
+        let child = launch::command(program)
             .args(&command[1..])
             .env(group::ENV_GROUP, bench.paths.name().as_str())
             .env(group::ENV_HOME, bench.paths.home())
@@ -158,15 +161,6 @@ impl Subject {
         if self.exit.is_none() {
             let _ = kill_process_group(Pid::from_child(&self.child), signal);
         }
-    }
-}
-
-/// A program that ships with this one is next to it; any other is found as a shell finds it.
-fn program(name: &str) -> PathBuf {
-    let beside = std::env::current_exe().ok().and_then(|own| Some(own.parent()?.join(name)));
-    match beside.filter(|path| !name.contains('/') && path.is_file()) {
-        Some(path) => path,
-        None => name.into(),
     }
 }
 
