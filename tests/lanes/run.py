@@ -139,7 +139,8 @@ class Runner:
     def __init__(self, lanes, options, temporary):
         self.lanes = lanes
         self.options = options
-        self.environment = dict(os.environ, TMPDIR=temporary)
+        # PulseAudio's library, which espeak-ng uses, keeps its folder for all later programs of the user.
+        self.environment = dict(os.environ, TMPDIR=temporary, PULSE_RUNTIME_PATH=str(KEPT / "pulse"))
         self.results = []
         self.lock = threading.Lock()
         self.seconds = read_json(KEPT / "seconds.json", {})

@@ -94,6 +94,7 @@ impl Session {
         };
         let asked = presentations.iter().enumerate().map(|(at, put)| (Some(at), put.question));
         let interpretations = asked.chain([(None, Question::None)]).flat_map(of).collect();
+        let newest = presentations.first().map_or(Question::None, |put| put.question);
         Utterance {
             seq: self.state.applied.next(),
             interpretations,
@@ -102,7 +103,7 @@ impl Session {
             onset: self.now,
             end: self.now,
             accepted: self.now,
-            unknown: self.reader.unknown_word(text),
+            unknown: self.reader.unknown_word(text, newest),
             ..Utterance::default()
         }
     }

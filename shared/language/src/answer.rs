@@ -64,34 +64,12 @@ impl Answers {
         self.given.last().is_some_and(|given| given.at.is_some_and(|given| given < at))
     }
 
-    /// The valid answer: the last one, unless it is tied to its opposite ("yes and no"); and its
-    /// doubt. An answer given twice has the smaller doubt.
-    fn standing(&self, tags: &[Tag<'_>]) -> Option<(Answer, f64)> {
+    /// The last answer and its doubt. An answer given twice has the smaller doubt.
+    fn standing(&self) -> Option<(Answer, f64)> {
         let last = *self.given.last()?;
-        if let [.., before, _] = self.given[..]
-            && let (Some(from), Some(to)) = (before.at, last.at)
-            && before.answer != last.answer
-            && (is_tied(tags.get(from + 1..to).unwrap_or_default()) || is_doubled(tags, from, to))
-        {
-            return Some((Answer::Unsure, 0.0));
-        }
         let again = self.given.iter().rev().take_while(|given| given.answer == last.answer);
         Some((last.answer, again.map(|given| given.doubt).fold(1.0, f64::min)))
     }
-}
-
-/// Only "and", "or" or "but" in between.
-fn is_tied(between: &[Tag<'_>]) -> bool {
-    let tie = |tag: &Tag<'_>| tag.is_any(classes![And Or But]);
-    between.iter().any(tie)
-        && between.iter().all(|tag| tie(tag) || tag.is_any(classes![Filler Plain]))
-}
-
-/// "sometimes yes, sometimes no", "could be yes, could be no".
-fn is_doubled(tags: &[Tag<'_>], from: usize, to: usize) -> bool {
-    let lead = |at: usize| at.checked_sub(1).and_then(|before| tags.get(before));
-    let (Some(first), Some(second)) = (lead(from), lead(to)) else { return false };
-    first.word == second.word && !second.is_any(classes![Yes No Repair Filler])
 }
 
 /// Returns the answer that a tag gives on its own.
@@ -110,11 +88,7 @@ pub(crate) fn answer(tags: &[Tag<'_>], clause: &Clause, at: usize) -> Option<Ans
             Some(Answer::No)
         }
         Class::PutBack => Some(Answer::No),
-        Class::Be | Class::Auxiliary if is_affirmed(tags, clause, at) => Some(Answer::Yes),
-        Class::WeakYes if is_judged(tags, clause, at) => Some(Answer::Yes),
-        Class::WeakNo if is_judged(tags, clause, at) || is_wrong_thing(tags, at) => {
-            Some(Answer::No)
-        }
+        Class::WeakNo if is_wrong_thing(tags, at) => Some(Answer::No),
         _ => None,
     }
 }
@@ -146,72 +120,6 @@ pub(crate) fn is_wrong_thing(tags: &[Tag<'_>], at: usize) -> bool {
             .is_some_and(|next| next.is_value() || next.is_any(classes![Head Attribute Unlisted]))
 }
 
-/// "drawer is right", "white would be wrong".
-fn is_judged(tags: &[Tag<'_>], clause: &Clause, at: usize) -> bool {
-    let before = &tags[clause.span.start..at];
-    let plain = |tag: &Tag<'_>| {
-        tag.is_value() || tag.is_any(classes![Determiner Head Filler Yes No Preposition])
-    };
-    matches!(before, [said @ .., be]
-        if be.is(Class::Be) && said.iter().all(plain) && said.iter().any(|tag| tag.is_value()))
-        && at + 1 == clause.span.end
-}
-
-/// Returns whether a sentence about the question says no more than yes.
-fn is_affirmed(tags: &[Tag<'_>], clause: &Clause, at: usize) -> bool {
-    let before = &tags[clause.span.start..at];
-    let subject = before.iter().rev().find(|tag| !tag.is(Class::Plain));
-    let said = &tags[at + 1..clause.span.end];
-    if said.is_empty() {
-        // "it very much is", but not "if it is"
-        const OPEN: &[Class] =
-            classes![Question Join Unsure Pondering Not Unlisted Ordinal AskBack];
-        let plain = |tag: &Tag<'_>| !tag.is_unknown() && !tag.is_value() && !tag.is_any(OPEN);
-        return subject.is_some_and(|tag| tag.is(Class::It)) && before.iter().all(plain);
-    }
-    let about_it = before.last().is_some_and(|tag| tag.is_any(classes![It Pointer]));
-    let is = tags[at].is(Class::Be);
-    about_it && (is && (is_the_one(tags, clause, at) || is_what(said)) || is_it(said))
-}
-
-/// "that's where it is", "that's what I've been looking for".
-fn is_what(said: &[Tag<'_>]) -> bool {
-    let [what, whose, rest @ ..] = said else { return false };
-    const STRANGE: &[Class] = classes![Not No Unsure Pondering Unlisted Third Other Ordinal];
-    // "what is in it" is a phrase
-    let phrase = what.is(Class::AskBack) && what.word == "what";
-    (what.is(Class::Question) || phrase)
-        && (whose.is_any(classes![It First Possessive Be]) || whose.word == "it")
-        && rest.iter().all(|tag| !tag.is_value() && !tag.is_any(STRANGE))
-        && rest.iter().filter(|tag| tag.is_unknown()).count() <= 1
-}
-
-/// "it is made of that", "it does have that", "it's in there", "it is one".
-fn is_it(said: &[Tag<'_>]) -> bool {
-    let Some((last, rest)) = said.split_last() else { return false };
-    let place = matches!(last.word, "in" | "there" | "here" | "up" | "down" | "over" | "right");
-    let shown =
-        last.is_any(classes![Pointer It]) || last.is(Class::Plain) && (place || last.word == "one");
-    shown
-        && rest
-            .iter()
-            .all(|tag| tag.is_any(classes![Plain Preposition Attribute Auxiliary Be Filler]))
-}
-
-/// "that is exactly the one I want", "it's the one".
-fn is_the_one(tags: &[Tag<'_>], clause: &Clause, at: usize) -> bool {
-    let said = &tags[at + 1..clause.span.end];
-    let plain = tags[clause.span.clone()].iter().all(|tag| {
-        !tag.is_value()
-            && !tag.is_unknown()
-            && !tag.is_any(classes![Not Ordinal Unlisted Other Question])
-    });
-    let the_one = said.windows(2).any(|pair| {
-        (pair[0].word == "the" || pair[0].is(Class::Possessive)) && pair[1].is(Class::Head)
-    });
-    plain && the_one
-}
-
 /// "the bowl, yes", "okay, get it"
 fn names_thing(tags: &[Tag<'_>]) -> bool {
     let names = |word: &str| match Lexicon::own().word(word) {
@@ -238,7 +146,7 @@ pub(crate) fn response(
     let opens = asked.is_nothing();
     let is_mere = || !described && !names_thing(tags);
     let counts = |answer| !opens || matches!(answer, Answer::Yes | Answer::No) && is_mere();
-    let answer = content.answers.standing(tags).filter(|(answer, _)| counts(*answer));
+    let answer = content.answers.standing().filter(|(answer, _)| counts(*answer));
     match (answer, careless) {
         (Some((Answer::Yes, doubt)), _) => (Response::Yes, doubt),
         // "no, I don't mind" denies nothing.

@@ -28,15 +28,6 @@ pub(crate) struct Clause {
     pub(crate) requests: bool,
     /// Orders something else than to fetch.
     pub(crate) chore: bool,
-    /// Values of which nothing is said.
-    pub(crate) distractors: Vec<usize>,
-}
-
-impl Clause {
-    /// Returns whether the value at this tag describes the wanted object.
-    pub(crate) fn counts(&self, at: usize) -> bool {
-        self.topic == Topic::On && !self.distractors.contains(&at)
-    }
 }
 
 /// Longest clause that is judged as one, so that the work stays linear in the utterance.

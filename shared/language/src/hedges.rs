@@ -53,8 +53,6 @@ const SURENESS: &[(f64, &str)] = &[
 ];
 /// Sureness of a phrase without any of these words.
 const SURE_LEAST: f64 = 0.55;
-/// "maybe" as an answer.
-pub(crate) const MAYBE: f64 = 0.6;
 
 /// Returns the confidence that a phrase expresses, 1 for a phrase that is not a hedge.
 pub(crate) fn sureness(class: Class, phrase: &str) -> f64 {

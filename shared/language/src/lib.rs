@@ -19,6 +19,7 @@
 //! | content | `extractor.rs` (`content.rs`, `negation_scope.rs`, `negation.rs`) | values asserted, groups excluded, answers |
 //! | answer, intent | `answer.rs` (`indifference.rs`), `intent.rs` (`questions.rs`), `references.rs`, `objects.rs` | the response that counts, the user's intent, what is referred to, each object asked for |
 //! | readings | `parsed.rs`, `reader.rs` | alternative readings with weights and doubts |
+//! | judge of answers | `answer_judge.rs` (`vocabulary/answer_judge.bin`) | how probable each answer to a question of yes or no is |
 //!
 //! [`CompletenessJudge`] judges whether a speaker will continue after a pause. [`words::confusion`]
 //! gives the probabilities of mishearing one of a scene's words for another.
@@ -55,6 +56,7 @@
 //! ```
 
 mod answer;
+mod answer_judge;
 mod asking_back;
 mod clauses;
 mod closed_class;
@@ -104,6 +106,7 @@ mod word_groups;
 #[cfg(test)]
 mod tests;
 
+pub use answer_judge::{ANSWER_ROWS, ANSWERS, AnswerJudge, answers_trained_on};
 pub use completeness::{Completeness, CompletenessJudge};
 pub use echo::is_echo;
 pub use fates::Polarity;

@@ -4,7 +4,6 @@ use scene::{Doubt, Intent, Reading, Reference, Response, WordId};
 
 use crate::clauses::Clause;
 use crate::content::{Asserted, Content};
-use crate::hedges::MAYBE;
 use crate::objects::objects;
 use crate::question_words::{QuestionWords, SceneQuestions};
 use crate::tagger::Tag;
@@ -14,9 +13,6 @@ use crate::token_class::{Class, classes};
 pub const READINGS_MAX: usize = 4;
 /// Most further objects that "all" means, and most values in a question.
 const MORE_MAX: usize = 4;
-/// Weight as a yes of a "maybe" that is not an answer, judged. That yes is doubted as well, so that
-/// it moves the odds little.
-const MAYBE_WEIGHT: f64 = 0.4;
 
 /// An utterance after parsing.
 pub(crate) struct ParsedUtterance<'a> {
@@ -31,6 +27,8 @@ pub(crate) struct ParsedUtterance<'a> {
     pub(crate) tags: Vec<Tag<'a>>,
     pub(crate) clauses: Vec<Clause>,
     pub(crate) questions: &'a SceneQuestions,
+    /// Text that no person says.
+    pub(crate) code: bool,
 }
 
 impl ParsedUtterance<'_> {
@@ -157,11 +155,6 @@ impl ParsedUtterance<'_> {
             let readings = choices.iter().map(|base| self.reading_of(base));
             return std::iter::once(best).chain(readings).map(|one| (weight, one)).collect();
         }
-        if self.is_maybe(&best) {
-            let doubt = Doubt { response: 2.0 * (1.0 - MAYBE), ..Doubt::default() };
-            let yes = Reading { response: Response::Yes, doubt, ..best.clone() };
-            return vec![(1.0 - MAYBE_WEIGHT, best), (MAYBE_WEIGHT, yes)];
-        }
         if self.may_take_back(&best) {
             let doubt = Doubt { response: 0.0, ..best.doubt.clone() };
             let correction = Reading { response: Response::None, doubt, ..best.clone() };
@@ -198,18 +191,6 @@ impl ParsedUtterance<'_> {
             |value: &Asserted<'_>| self.questions.values_beside(value).iter().any(is_offered);
         let base = &self.content.base;
         best.response == Response::No && !base.is_empty() && !base.iter().any(concerns)
-    }
-
-    /// "maybe", "it could be", and nothing else, in answer to a yes or no question.
-    fn is_maybe(&self, best: &Reading) -> bool {
-        let asked = matches!(
-            self.asked,
-            QuestionWords::Value(..) | QuestionWords::Object(_) | QuestionWords::PerceivedObject
-        );
-        asked
-            && *best == Reading { intent: Intent::Inform, ..Reading::default() }
-            && self.content.answers.is_empty()
-            && self.tags.iter().any(|tag| tag.is(Class::Hedge))
     }
 }
 

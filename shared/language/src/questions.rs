@@ -87,10 +87,10 @@ pub(crate) fn fetches_it(tags: &[Tag<'_>], clauses: &[Clause]) -> bool {
     })
 }
 
-/// Returns the clause as part of a question: nothing in it describes another thing.
+/// Returns the clause as part of a question, or as none.
 fn of_question(clause: &Clause) -> Clause {
     let topic = if clause.topic == Topic::AskBack { Topic::On } else { Topic::Off };
-    Clause { topic, distractors: Vec::new(), ..clause.clone() }
+    Clause { topic, ..clause.clone() }
 }
 
 /// The intent of a question; `describes`: it names objects of the scene.

@@ -7,6 +7,7 @@ use scene::{Intent, Question, Reading, Reference, Response, Role, Scene, Unknown
 use words::{Tokens, normalise};
 
 use crate::answer::response;
+use crate::answer_judge::{AnswerJudge, features};
 use crate::clauses::{Clause, Topic, clauses};
 use crate::content::Content;
 use crate::disambiguate::resolve_after_question;
@@ -26,6 +27,7 @@ use crate::questions::{fetches_it, question};
 use crate::references::reference;
 use crate::related::related;
 use crate::tagger::{Tag, answers_alone, tag};
+use crate::token_class::Class;
 use crate::unknown::unknown_words;
 
 /// Reads utterances about one scene. Holds all that it needs of the scene.
@@ -35,8 +37,9 @@ pub struct Reader {
     spotter: WordSpotter,
     lexicon: Lexicon,
     questions: SceneQuestions,
-    /// Another judge than the built-in one.
+    /// Other judges than the built-in ones.
     judge: Option<Arc<Judge>>,
+    answer_judge: Option<Arc<AnswerJudge>>,
     /// Whether the scene knows the places of objects.
     placed: bool,
 }
@@ -50,6 +53,7 @@ impl Reader {
             lexicon: Lexicon::new(scene),
             questions: SceneQuestions::new(scene),
             judge: None,
+            answer_judge: None,
             placed: scene.objects().iter().filter(|it| it.placement.is_some()).count() > 1,
         }
     }
@@ -59,8 +63,26 @@ impl Reader {
         Self { judge: Some(judge), ..self }
     }
 
+    /// Replaces the judge of answers; used in training.
+    pub fn with_answer_judge(self, judge: Arc<AnswerJudge>) -> Self {
+        Self { answer_judge: Some(judge), ..self }
+    }
+
     pub(crate) fn judge(&self) -> &Judge {
         self.judge.as_deref().unwrap_or_else(|| Judge::built_in())
+    }
+
+    /// Returns the features of an answer for its judge, and what the rules propose; `None` if it is not judged.
+    pub fn answer_features(
+        &self,
+        text: &str,
+        last_question: Question,
+    ) -> Option<(Vec<u32>, Response)> {
+        let text = normalise(text);
+        let tokens = Tokens::of(&text);
+        let parsed = self.best_parse(&tokens, &self.hear(&tokens, last_question));
+        let proposed = parsed.reading();
+        features(&parsed, &proposed).map(|rows| (rows, proposed.response))
     }
 
     /// Returns the reader's language.
@@ -90,15 +112,15 @@ impl Reader {
         }
     }
 
-    /// Returns the attribute and object words in an utterance that the scene lacks, for the robot's
-    /// reply; none in the paper's language.
-    pub fn unknown_words(&self, text: &str) -> Vec<UnknownWord> {
+    /// Returns the attribute and object words in an utterance that followed `last_question` and that the scene
+    /// lacks, for the robot's reply; none in the paper's language.
+    pub fn unknown_words(&self, text: &str, last_question: Question) -> Vec<UnknownWord> {
         match self.language {
             Language::Paper => Vec::new(),
             Language::Careful => {
                 let text = normalise(text);
                 let tokens = Tokens::of(&text);
-                let parsed = self.best_parse(&tokens, &self.hear(&tokens, Question::None));
+                let parsed = self.best_parse(&tokens, &self.hear(&tokens, last_question));
                 let (tags, clauses) = (&parsed.tags, &parsed.clauses);
                 let related = related(&tokens, tags, clauses, self.placed);
                 unknown_words(&tokens, tags, clauses, &related)
@@ -108,8 +130,8 @@ impl Reader {
 
     /// Returns the one of these words about which the robot says that the scene lacks it: a kind of thing rather
     /// than a quality.
-    pub fn unknown_word(&self, text: &str) -> Option<UnknownWord> {
-        let mut words = self.unknown_words(text);
+    pub fn unknown_word(&self, text: &str, last_question: Question) -> Option<UnknownWord> {
+        let mut words = self.unknown_words(text, last_question);
         let kind = words.iter().position(|word| word.role == Role::Kind);
         (!words.is_empty()).then(|| words.swap_remove(kind.unwrap_or(0)))
     }
@@ -158,9 +180,15 @@ impl Reader {
     /// Every reading of an utterance with its weight, best first.
     fn weighed(&self, tokens: &Tokens<'_>, last_question: Question) -> Vec<(f64, Reading)> {
         let heard = self.hear(tokens, last_question);
+        let judge = self.answer_judge.as_deref().unwrap_or_else(|| AnswerJudge::built_in());
         let mut readings: Vec<(f64, Reading)> = Vec::new();
         for (weight, fates) in fates(self.judge(), &heard.tags, heard.asked) {
-            for (share, reading) in self.parse(tokens, &heard, &fates).readings() {
+            let parsed = self.parse(tokens, &heard, &fates);
+            let judged = parsed.readings().into_iter().flat_map(|(share, reading)| {
+                let judged = judge.judged(&parsed, reading).into_iter();
+                judged.map(move |(part, reading)| (share * part, reading))
+            });
+            for (share, reading) in judged {
                 // Doubts say how well words were heard: they do not distinguish readings.
                 match readings.iter_mut().find(|(_, known)| known.says_the_same(&reading)) {
                     Some((known, _)) => *known += weight * share,
@@ -238,7 +266,19 @@ impl Reader {
             _ => {}
         }
         let questions = &self.questions;
-        ParsedUtterance { content, response, intent, refers, to, asked, tags, clauses, questions }
+        let code = tokens.code || tags.iter().any(|tag| tag.is(Class::Injection));
+        ParsedUtterance {
+            content,
+            response,
+            intent,
+            refers,
+            to,
+            asked,
+            tags,
+            clauses,
+            questions,
+            code,
+        }
     }
 }
 

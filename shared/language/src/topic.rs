@@ -43,12 +43,11 @@ pub(crate) fn classify(
         unknown: clause.iter().filter(|tag| tag.is_unknown()).count(),
         values: clause.iter().filter(|tag| tag.is_value()).count(),
     };
-    let distractors: Vec<usize> = span.clone().filter(|at| fates.is_neither(*at)).collect();
-    let wishes = distractors.len() < analysis.values;
+    let wishes = span.clone().filter(|at| fates.is_neither(*at)).count() < analysis.values;
     let topic = analysis.topic(injected, wishes);
     let requests = topic == Topic::On && analysis.requests();
     let chore = !injected && analysis.is_chore();
-    Clause { span, topic, requests, chore, distractors }
+    Clause { span, topic, requests, chore }
 }
 
 impl<'a> ClauseAnalysis<'a> {
@@ -111,7 +110,7 @@ impl<'a> ClauseAnalysis<'a> {
         if self.has(classes![Fetch Want]) {
             return false;
         }
-        let about_it = self.has(classes![It]) || self.has_the_one() || self.confirms();
+        let about_it = self.has(classes![It]) || self.has_the_one();
         let is_story = self.has(classes![Story]) && !about_it;
         match opening {
             Class::Story | Class::When => !about_it,
@@ -134,12 +133,6 @@ impl<'a> ClauseAnalysis<'a> {
     /// Returns whether the clause is about "one" or "ones".
     fn has_the_one(&self) -> bool {
         self.clause.iter().any(|tag| tag.is(Class::Head) && tag.word.starts_with("one"))
-    }
-
-    /// "that's the one" and the like, whatever story follows.
-    fn confirms(&self) -> bool {
-        let shown = |tag: &Tag<'_>| matches!(tag.word, "that" | "this" | "it");
-        self.clause.iter().any(|tag| tag.is_any(classes![Yes WeakYes No]) && shown(tag))
     }
 
     /// "my bowl", "my silk shirt": the word here, or the phrase's last noun, names one of ours.
@@ -176,8 +169,7 @@ impl<'a> ClauseAnalysis<'a> {
         let tied = self.has(SCENE_NAMES)
             || self.has(classes![Fetch It])
             || self.points()
-            || self.is_bare_noun()
-            || self.denies_by_far();
+            || self.is_bare_noun();
         (self.unknown > 1 || elsewhere) && !tied
     }
 
@@ -198,13 +190,6 @@ impl<'a> ClauseAnalysis<'a> {
             && self.is_everything
             && (1..=2).contains(&named)
             && rest[named..].iter().all(locates)
-    }
-
-    /// "not in a month of sundays"
-    fn denies_by_far(&self) -> bool {
-        self.values == 0
-            && matches!(self.clause,
-                [not, how, ..] if not.is(Class::Not) && how.is(Class::Preposition))
     }
 
     /// Only parts of a noun phrase: "blue", "the green one".

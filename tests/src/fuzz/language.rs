@@ -43,7 +43,7 @@ pub(super) fn run(input: &[u8]) {
     let (best, certain) = (&readings[0].1, careful.read(&text, question));
     assert!(best.says_the_same(&certain), "{best:?}, {certain:?}");
     readings.into_iter().chain(spotted).for_each(|reading| travels(reading, scene));
-    let unknown = careful.unknown_words(&text);
+    let unknown = careful.unknown_words(&text, Question::None);
     assert!(unknown.iter().all(|word| !word.text.is_empty()), "{unknown:?}");
 }
 
@@ -89,4 +89,48 @@ pub(super) fn seeds() -> Vec<Vec<u8>> {
         [&[3, 0, 1, 2][..], &0.5_f32.to_le_bytes(), &1.0_f32.to_le_bytes(), b"no not that one"];
     seeds.push(chosen(0, confident.concat()));
     seeds
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Instant;
+
+    use super::*;
+
+    #[test]
+    fn reader_time_is_linear_in_the_length() {
+        let (_, [reader, _]) = &READERS[0];
+        let pieces = [
+            "white ",
+            "not the white one or ",
+            "no ",
+            "counter foo ",
+            "a",
+            "dish ",
+            "yes and ",
+            "my shirt is white ",
+            "the red uh ",
+            "mmm",
+            "but not ",
+            "\u{301}",
+            "whiteone",
+            "x-",
+        ];
+        for piece in pieces {
+            // The quickest of a few runs: other work on the machine only ever adds.
+            let seconds = |chars: usize| {
+                let text: String = piece.chars().cycle().take(chars).collect();
+                let run = || {
+                    let start = Instant::now();
+                    reader.read(&text, Question::None);
+                    start.elapsed().as_secs_f64()
+                };
+                (0..5).map(|_| run()).fold(f64::INFINITY, f64::min)
+            };
+            // 64 times the text: a quadratic reader takes 4,096 times as long, and between the two
+            // there is room for a busy machine.
+            let growth = seconds(16_000) / seconds(250);
+            assert!(growth < 1_000.0, "{piece:?} grows {growth:.0} times");
+        }
+    }
 }

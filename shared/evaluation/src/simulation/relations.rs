@@ -86,7 +86,7 @@ fn heard(manager: &mut Manager, state: &State, text: &str, reader: &Reader) -> S
         end: accepted,
         accepted,
         interpretations: asked.into_iter().chain([(None, Question::None)]).flat_map(read).collect(),
-        unknown: reader.unknown_words(text).into_iter().next(),
+        unknown: reader.unknown_words(text, question).into_iter().next(),
         ..Utterance::default()
     };
     manager.next(state, &Cause::Utterance(utterance), accepted)

@@ -40,6 +40,7 @@ fn choices_are_answered_by_value_by_order_and_by_neither() {
             Question::Choice(k, Options::new(&values.collect::<Vec<ValueId>>()).unwrap());
         let word = |word: &scene::WordId| scene.words()[word.index()].clone();
         for text in said.split("; ") {
+            assert_eq!(reader.unknown_word(text, question), None, "{text}");
             let reading = reader.read(text, question);
             let mut read: Vec<String> = reading.base.iter().map(word).collect();
             read.extend(reading.excluded.iter().flatten().map(|it| format!("-{}", word(it))));

@@ -1,7 +1,7 @@
-//! Hash of the judge's training inputs.
+//! Hashes of the judges' training inputs.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use scene::StableHash;
 
@@ -28,9 +28,25 @@ pub fn trained_on() -> Result<u64, String> {
     ];
     paths.extend(sources.map(|source| here.join("../src").join(source)));
     paths.extend(["templates.txt", "hard_templates.txt"].map(|templates| here.join(templates)));
+    hash_of(&paths)
+}
+
+/// Returns the hash of answers and features, and of what the rules know of words: it dates the weights of answers.
+///
+/// # Errors
+/// A file that cannot be read.
+pub fn answers_trained_on() -> Result<u64, String> {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut paths = files(&here.join("answers"));
+    let sources = ["answer_judge.rs", "vocabulary/word_groups.txt", "vocabulary/phrases.txt"];
+    paths.extend(sources.map(|source| here.join("../src").join(source)));
+    hash_of(&paths)
+}
+
+fn hash_of(paths: &[PathBuf]) -> Result<u64, String> {
     let mut hash = StableHash::default();
     for path in paths {
-        let bytes = fs::read(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+        let bytes = fs::read(path).map_err(|error| format!("{}: {error}", path.display()))?;
         hash.bytes(&bytes);
     }
     Ok(hash.value())
@@ -44,5 +60,7 @@ mod tests {
     fn weights_are_of_these_lines() {
         let help = "help: cargo run --release -p reader_training --bin train -- --write";
         assert_eq!(language::trained_on(), trained_on().unwrap(), "{help}");
+        let help = "help: cargo run --release -p reader_training --bin answers -- --write";
+        assert_eq!(language::answers_trained_on(), answers_trained_on().unwrap(), "{help}");
     }
 }

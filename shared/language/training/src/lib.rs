@@ -6,11 +6,14 @@
 //! | folder | |
 //! |---|---|
 //! | `lines/` | by authors who had seen neither the code nor each other's lines; the judge is trained on them |
+//! | `answers/` | answers to questions of yes or no, by other such authors; the judge of answers is trained on them |
+//! | `held_out_answers/` | by four more of them: never trained on (`scores.txt`) |
 //! | `held_out/` | by two more authors: scored three times at most, and read by nobody (`scores.txt`) |
 //! | `scenes/` | scenes that were made for the lines |
 //! | `templates.txt` | ordinary requests, made into lines in several scenes |
 //! | `hard_templates.txt` | reasons, exceptions, corrections, landmarks and talk, made into lines likewise |
 
+mod answers;
 mod cross;
 mod inputs;
 mod line;
@@ -24,8 +27,11 @@ mod sources;
 mod table;
 mod templates;
 
+pub use answers::{
+    Answer, AnswerScore, Answers, answers, answers_of, answers_without, train_answers,
+};
 pub use cross::{Unseen, without_author, without_fifths};
-pub use inputs::trained_on;
+pub use inputs::{answers_trained_on, trained_on};
 pub use line::{Line, Marked, lines};
 pub use linear::{Lesson, Linear};
 pub use model::{Model, Sums, fitted};

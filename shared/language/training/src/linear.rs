@@ -2,7 +2,6 @@
 //!
 //! The order is fixed, so that the same lines give the same weights on every machine.
 
-use language::ROWS;
 use vocabulary::Rng;
 
 /// Pull of each weight towards zero, a step.
@@ -19,17 +18,17 @@ pub struct Lesson {
     pub weight: f64,
 }
 
-/// Weights of three labels by row.
+/// Weights of the labels by row.
 #[derive(Clone, Debug)]
-pub struct Linear {
-    weights: Vec<[f64; 3]>,
+pub struct Linear<const LABELS: usize> {
+    weights: Vec<[f64; LABELS]>,
 }
 
-impl Linear {
-    /// Trains on the lessons.
-    pub fn train(lessons: &[Lesson], epochs: usize, rate: f64, seed: u64) -> Self {
-        let mut linear = Self { weights: vec![[0.0; 3]; ROWS] };
-        let mut seen = vec![[1e-2; 3]; ROWS];
+impl<const LABELS: usize> Linear<LABELS> {
+    /// Trains `rows` rows of weights on the lessons.
+    pub fn train(lessons: &[Lesson], rows: usize, epochs: usize, rate: f64, seed: u64) -> Self {
+        let mut linear = Self { weights: vec![[0.0; LABELS]; rows] };
+        let mut seen = vec![[1e-2; LABELS]; rows];
         let mut order: Vec<usize> = (0..lessons.len()).collect();
         let mut random = Rng::new(seed);
         for _ in 0..epochs {
@@ -41,7 +40,7 @@ impl Linear {
         linear
     }
 
-    fn step(&mut self, lesson: &Lesson, rate: f64, seen: &mut [[f64; 3]]) {
+    fn step(&mut self, lesson: &Lesson, rate: f64, seen: &mut [[f64; LABELS]]) {
         let stated = softmax(self.sums(&lesson.rows));
         for (label, stated) in stated.into_iter().enumerate() {
             let error = (stated - f64::from(u8::from(label == lesson.label))) * lesson.weight;
@@ -57,8 +56,8 @@ impl Linear {
     }
 
     /// Returns the sums of the labels.
-    pub fn sums(&self, rows: &[u32]) -> [f64; 3] {
-        let mut sums = [0.0; 3];
+    pub fn sums(&self, rows: &[u32]) -> [f64; LABELS] {
+        let mut sums = [0.0; LABELS];
         for row in rows {
             for (sum, weight) in sums.iter_mut().zip(self.weights[*row as usize]) {
                 *sum += weight;
@@ -68,13 +67,13 @@ impl Linear {
     }
 
     /// The weights of a row.
-    pub fn row(&self, row: usize) -> [f64; 3] {
+    pub fn row(&self, row: usize) -> [f64; LABELS] {
         self.weights[row]
     }
 }
 
 /// Returns probabilities for sums.
-pub(crate) fn softmax(sums: [f64; 3]) -> [f64; 3] {
+pub(crate) fn softmax<const LABELS: usize>(sums: [f64; LABELS]) -> [f64; LABELS] {
     let most = sums.into_iter().fold(f64::MIN, f64::max);
     let powers = sums.map(|sum| (sum - most).exp());
     let all: f64 = powers.iter().sum();

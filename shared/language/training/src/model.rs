@@ -17,7 +17,7 @@ const SHARES: [f64; 2] = [0.35, 0.23];
 /// Both parts.
 #[derive(Clone, Debug)]
 pub struct Model {
-    linear: Linear,
+    linear: Linear<3>,
     recurrent: Vec<Recurrent>,
 }
 
@@ -28,7 +28,7 @@ impl Model {
     /// Trains on the lines that are chosen by the name of their source and their number.
     pub fn train(sources: &Sources, is_chosen: impl Fn(&str, usize) -> bool) -> Self {
         let lessons = sources.lessons(&is_chosen);
-        let linear = Linear::train(&lessons, EPOCHS, RATE, 1);
+        let linear = Linear::train(&lessons, ROWS, EPOCHS, RATE, 1);
         let utterances = sources.utterances(&is_chosen);
         let networks = (1..=NETWORKS as u64).map(|seed| recurrent::train(&utterances, seed));
         Self { linear, recurrent: networks.collect() }

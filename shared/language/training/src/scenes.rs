@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use language::{Judge, Reader};
+use language::{AnswerJudge, Judge, Reader};
 
 use scene::{AttributeId, Question, Scene, ValueId};
 use vocabulary::Language;
@@ -46,10 +46,19 @@ impl Scenes {
 
     /// Returns the same scenes, read with another judge.
     pub fn with_judge(&self, judge: &Arc<Judge>) -> Self {
-        let with_judge = |(name, (scene, reader)): (&String, &(Scene, Reader))| {
-            (name.clone(), (scene.clone(), reader.clone().with_judge(judge.clone())))
+        self.with(|reader| reader.with_judge(judge.clone()))
+    }
+
+    /// Returns the same scenes, read with another judge of answers.
+    pub fn with_answer_judge(&self, judge: &Arc<AnswerJudge>) -> Self {
+        self.with(|reader| reader.with_answer_judge(judge.clone()))
+    }
+
+    fn with(&self, change: impl Fn(Reader) -> Reader) -> Self {
+        let changed = |(name, (scene, reader)): (&String, &(Scene, Reader))| {
+            (name.clone(), (scene.clone(), change(reader.clone())))
         };
-        Self(self.0.iter().map(with_judge).collect())
+        Self(self.0.iter().map(changed).collect())
     }
 
     /// The names of the scenes.

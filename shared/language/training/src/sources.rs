@@ -23,7 +23,7 @@ const OWN: f64 = 2.0;
 const TEMPLATES: [(&str, usize, f64); 2] =
     [("templates.txt", 3, 1.0), ("hard_templates.txt", 1, 0.5)];
 /// The reader's own tables.
-const TABLES: [&str; 4] = [
+pub(crate) const TABLES: [&str; 4] = [
     "shared/language/src/tests/conversation.txt",
     "shared/language/src/tests/cases.txt",
     "tests/fixtures/utterances/fresh_1.txt",
@@ -127,7 +127,7 @@ impl Taught {
     }
 }
 
-fn read(path: &Path) -> Result<String, String> {
+pub(crate) fn read(path: &Path) -> Result<String, String> {
     fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))
 }
 
@@ -173,7 +173,7 @@ fn of_templates(
 
 fn of_table(scenes: &Scenes, path: &Path) -> Result<Vec<Taught>, String> {
     let mut taught = Vec::new();
-    for Row { scene, question: asked, text, said, is_repair } in table(scenes, path)? {
+    for Row { scene, question: asked, text, said, kind, .. } in table(scenes, path)? {
         let (_, reader) = scenes.get(&scene)?;
         let features = reader.features(&text, asked);
         let polarity =
@@ -185,7 +185,8 @@ fn of_table(scenes: &Scenes, path: &Path) -> Result<Vec<Taught>, String> {
         let marked = |it: &Example| Marked { surface: it.surface.clone(), polarity: polarity(it) };
         let marked: Vec<Marked> = features.examples.iter().map(marked).collect();
         // The tables omit retracted values, and authors deny them.
-        let is_plain = |polarity: &Polarity| !is_repair || *polarity != Polarity::Neither;
+        let is_plain =
+            |polarity: &Polarity| kind != "self-repair" || *polarity != Polarity::Neither;
         let labels = marked.iter().map(|it| Some(it.polarity).filter(is_plain)).collect();
         let line = Line { scene, text, marked, ..Line::default() };
         taught.push(Taught::new(line, asked, features, labels, OWN));

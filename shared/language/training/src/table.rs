@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::Path;
 
-use scene::{Question, Scene, WordId, question_from_json};
+use scene::{Question, Response, Scene, WordId, question_from_json};
 use serde_json::json;
 
 use crate::scenes::Scenes;
@@ -20,8 +20,10 @@ pub struct Row {
     pub text: String,
     /// The words that are wanted, and those that are denied.
     pub said: [Vec<WordId>; 2],
-    /// Whether something in the utterance is taken back.
-    pub is_repair: bool,
+    /// The answer, if the table states one: most state neither doubts nor indifference.
+    pub response: Option<Response>,
+    /// The heading that it stands under.
+    pub kind: String,
 }
 
 /// Reads a table.
@@ -30,15 +32,15 @@ pub struct Row {
 /// The file cannot be read, or is not a table.
 pub fn table(scenes: &Scenes, path: &Path) -> Result<Vec<Row>, String> {
     let text = fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
-    let (mut rows, mut is_repair) = (Vec::new(), false);
+    let (mut rows, mut kind) = (Vec::new(), "");
     for line in text.lines().filter(|line| !line.is_empty()) {
         if let Some(heading) = line.strip_prefix("## ") {
-            is_repair = heading == "self-repair";
+            kind = heading;
         }
         if !line.starts_with(['#', '~']) {
             let row = row(scenes, line)
                 .ok_or_else(|| format!("{}: expected a row, found {line}", path.display()))?;
-            rows.push(Row { is_repair, ..row });
+            rows.push(Row { kind: kind.to_owned(), ..row });
         }
     }
     Ok(rows)
@@ -56,7 +58,18 @@ fn row(scenes: &Scenes, line: &str) -> Option<Row> {
     let (scene, _) = scenes.get(&name).ok()?;
     let (question, text) = (question(scene, asked)?, text.trim().to_owned());
     let said = said(scene, meaning);
-    Some(Row { scene: name, question, text, said, is_repair: false })
+    let response = response(meaning);
+    Some(Row { scene: name, question, text, said, response, kind: String::new() })
+}
+
+fn response(meaning: &str) -> Option<Response> {
+    meaning.split('|').next()?.split_whitespace().find_map(|part| match part {
+        "yes" => Some(Response::Yes),
+        "no" => Some(Response::No),
+        "cannot_tell" => Some(Response::CannotTell),
+        "does_not_matter" => Some(Response::DoesNotMatter),
+        _ => None,
+    })
 }
 
 /// The words that a meaning wants and denies. Objects to put back, or asked about, are not.

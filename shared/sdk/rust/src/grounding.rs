@@ -31,7 +31,13 @@ pub trait Grounder {
     ) -> Vec<(f64, Reading)>;
 
     /// Returns a word of the likeliest wording that the scene does not have, about which the robot says so.
-    fn unknown(&mut self, _best: &Hypothesis, _scene: &Scene) -> Option<UnknownWord> {
+    /// `question` is the newest one that it may answer.
+    fn unknown(
+        &mut self,
+        _best: &Hypothesis,
+        _question: Question,
+        _scene: &Scene,
+    ) -> Option<UnknownWord> {
         None
     }
 
@@ -57,7 +63,8 @@ pub trait Grounder {
             }));
         }
         let best = heard.hypotheses.first();
-        let unknown = best.and_then(|best| self.unknown(best, scene));
+        let newest = heard.questions.first().copied().unwrap_or(Question::None);
+        let unknown = best.and_then(|best| self.unknown(best, newest, scene));
         Grounded { interpretations, unknown }
     }
 }

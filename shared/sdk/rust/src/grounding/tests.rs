@@ -3,6 +3,7 @@ use super::*;
 use crate::Time;
 use messages::{NO_QUESTION, WireGesture};
 use scene::{Response, WordId};
+use std::iter;
 
 fn scene() -> Scene {
     let bowls = include_str!("../../../../../config/scenes/bowls.toml");
@@ -14,9 +15,13 @@ struct Spotter;
 
 impl Grounder for Spotter {
     fn read(&mut self, heard: &Hypothesis, _: Question, scene: &Scene) -> Vec<(f64, Reading)> {
-        let said = heard.text.split(' ');
-        let base = said.filter_map(|word| scene.word_named(word)).collect();
-        certain(Reading { base, ..Reading::default() })
+        let said =
+            heard.text.split(' ').zip(heard.word_confidence.iter().chain(iter::repeat(&1.0)));
+        let known =
+            said.filter_map(|(word, sure)| Some((scene.word_named(word)?, 1.0 - f64::from(*sure))));
+        let (base, doubts) = known.unzip();
+        let doubt = Doubt { base: doubts, ..Doubt::default() };
+        certain(Reading { base, doubt, ..Reading::default() })
     }
 }
 
@@ -48,6 +53,23 @@ fn each_wording_is_read_for_each_question_and_for_none() {
         assert!(of_place.iter().all(|(question, _)| *question == place), "{found:?}");
         assert!((of_place[0].1 - 0.8).abs() < 1e-12 && (of_place[1].1 - 0.2).abs() < 1e-12);
     }
+}
+
+#[test]
+fn equal_meanings_have_the_doubt_of_both() {
+    let sure = |text: &str, weight, word_confidence: &[f32]| Hypothesis {
+        word_confidence: word_confidence.to_vec(),
+        ..weighed(text, weight)
+    };
+    let hypotheses = vec![
+        sure("the white bowl", 0.6, &[1.0, 0.5, 1.0]),
+        sure("a white ball", 0.4, &[1.0, 0.2, 1.0]),
+    ];
+    let heard =
+        Heard { seq: 1, hypotheses, questions: vec![], gesture_m: None, source: Source::Text };
+    let found = Spotter.ground(&heard, &scene()).interpretations;
+    let [only] = &found[..] else { panic!("{found:?}") };
+    assert!((only.reading.doubt.of_word(0) - (0.6 * 0.5 + 0.4 * 0.8)).abs() < 1e-6, "{only:?}");
 }
 
 #[test]
