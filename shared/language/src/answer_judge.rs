@@ -8,6 +8,7 @@ use std::sync::LazyLock;
 use scene::{Intent, Reading, Reference, Response};
 
 use crate::features::{Element, hash, mix, sort, text};
+use crate::judge::softmax;
 use crate::parsed::ParsedUtterance;
 use crate::question_words::QuestionWords;
 use crate::tagger::Tag;
@@ -68,11 +69,7 @@ impl AnswerJudge {
             let weights = self.weights[*row as usize];
             sums.iter_mut().zip(weights).for_each(|(sum, weight)| *sum += i64::from(weight));
         }
-        let sums = sums.map(|sum| sum as f64 * self.scale);
-        let most = sums.into_iter().fold(f64::MIN, f64::max);
-        let powers = sums.map(|sum| (sum - most).exp());
-        let all: f64 = powers.iter().sum();
-        powers.map(|power| power / all)
+        softmax(sums.map(|sum| sum as f64 * self.scale))
     }
 
     /// Returns the readings that a reading of the rules becomes: with the answers that are probable, each with its

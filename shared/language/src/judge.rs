@@ -61,10 +61,7 @@ impl Judge {
         let stated = |(example, recurrent): (&Example, [f32; 3])| {
             let linear = self.linear(&example.rows);
             let sums = [0, 1, 2].map(|n| linear[n] as f64 * self.scale + f64::from(recurrent[n]));
-            let most = sums.into_iter().fold(f64::MIN, f64::max);
-            let powers = sums.map(|sum| (sum - most).exp());
-            let all: f64 = powers.iter().sum();
-            powers.map(|power| power / all)
+            softmax(sums)
         };
         features.examples.iter().zip(recurrent).map(stated).collect()
     }
@@ -79,6 +76,14 @@ impl Judge {
         }
         sums
     }
+}
+
+/// Returns the probabilities of which these are the logarithms, up to a summand.
+pub fn softmax<const N: usize>(sums: [f64; N]) -> [f64; N] {
+    let most = sums.into_iter().fold(f64::MIN, f64::max);
+    let powers = sums.map(|sum| (sum - most).exp());
+    let all: f64 = powers.iter().sum();
+    powers.map(|power| power / all)
 }
 
 /// The sums of all networks together, for each value word.

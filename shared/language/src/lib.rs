@@ -112,7 +112,7 @@ pub use echo::is_echo;
 pub use fates::Polarity;
 pub use features::{Example, Features, ROWS};
 pub use halting::is_stop;
-pub use judge::{FLOOR, Judge, NETWORKS, recurrent_sums, trained_on};
+pub use judge::{FLOOR, Judge, NETWORKS, recurrent_sums, softmax, trained_on};
 pub use mentions::Mention;
 pub use parsed::READINGS_MAX;
 pub use read_back::word_findings;

@@ -22,7 +22,7 @@ use crate::table::{Row, table};
 /// Passes over the lessons, and the rate of the first step of a weight.
 const EPOCHS: usize = 5;
 const RATE: f64 = 0.01;
-/// Factor of the sums, as it was fitted to authors who were not seen.
+/// Factor of the sums, chosen by the scores of authors who were not seen.
 const SHARE: f64 = 0.7;
 /// How much a lesson with a slip counts.
 const SLIP: f64 = 0.5;

@@ -12,6 +12,10 @@ use crate::scenes::files;
 /// # Errors
 /// A file that cannot be read.
 pub fn trained_on() -> Result<u64, String> {
+    hash_of(&inputs())
+}
+
+fn inputs() -> Vec<PathBuf> {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut paths: Vec<_> = ["lines", "scenes", "../../../tests/fixtures/utterances"]
         .iter()
@@ -28,17 +32,18 @@ pub fn trained_on() -> Result<u64, String> {
     ];
     paths.extend(sources.map(|source| here.join("../src").join(source)));
     paths.extend(["templates.txt", "hard_templates.txt"].map(|templates| here.join(templates)));
-    hash_of(&paths)
+    paths
 }
 
-/// Returns the hash of answers and features, and of what the rules know of words: it dates the weights of answers.
+/// Returns the hash of the same with the answers, their features and phrases: it dates the weights of answers.
 ///
 /// # Errors
 /// A file that cannot be read.
 pub fn answers_trained_on() -> Result<u64, String> {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut paths = files(&here.join("answers"));
-    let sources = ["answer_judge.rs", "vocabulary/word_groups.txt", "vocabulary/phrases.txt"];
+    let mut paths = inputs();
+    paths.extend(files(&here.join("answers")));
+    let sources = ["answer_judge.rs", "vocabulary/phrases.txt"];
     paths.extend(sources.map(|source| here.join("../src").join(source)));
     hash_of(&paths)
 }

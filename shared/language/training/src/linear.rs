@@ -2,6 +2,7 @@
 //!
 //! The order is fixed, so that the same lines give the same weights on every machine.
 
+use language::softmax;
 use vocabulary::Rng;
 
 /// Pull of each weight towards zero, a step.
@@ -70,14 +71,6 @@ impl<const LABELS: usize> Linear<LABELS> {
     pub fn row(&self, row: usize) -> [f64; LABELS] {
         self.weights[row]
     }
-}
-
-/// Returns probabilities for sums.
-pub(crate) fn softmax<const LABELS: usize>(sums: [f64; LABELS]) -> [f64; LABELS] {
-    let most = sums.into_iter().fold(f64::MIN, f64::max);
-    let powers = sums.map(|sum| (sum - most).exp());
-    let all: f64 = powers.iter().sum();
-    powers.map(|power| power / all)
 }
 
 pub(crate) fn shuffle(order: &mut [usize], random: &mut Rng) {

@@ -1,9 +1,9 @@
 //! The judge's model, a linear and recurrent ones, and the file of its weights.
 
 use language::recurrent::{PARTS, Recurrent};
-use language::{Judge, NETWORKS, ROWS, recurrent_sums};
+use language::{Judge, NETWORKS, ROWS, recurrent_sums, softmax};
 
-use crate::linear::{Linear, softmax};
+use crate::linear::Linear;
 use crate::recurrent;
 use crate::sources::{Sources, Taught};
 

@@ -3,9 +3,8 @@
 use language::recurrent::{
     EMBEDDINGS, HIDDEN, JOINED, PARTS, Recurrent, Sequence, Stated, Step, UNITS, WIDTH, add,
 };
+use language::softmax;
 use vocabulary::Rng;
-
-use crate::linear::softmax;
 
 /// Passes over the utterances.
 const EPOCHS: usize = 5;
