@@ -60,8 +60,7 @@ impl Judge {
         let recurrent = recurrent_sums(&self.recurrent, &features.sequence);
         let stated = |(example, recurrent): (&Example, [f32; 3])| {
             let linear = self.linear(&example.rows);
-            let sums = [0, 1, 2].map(|n| linear[n] as f64 * self.scale + f64::from(recurrent[n]));
-            softmax(sums)
+            softmax([0, 1, 2].map(|n| linear[n] as f64 * self.scale + f64::from(recurrent[n])))
         };
         features.examples.iter().zip(recurrent).map(stated).collect()
     }

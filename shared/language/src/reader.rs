@@ -81,8 +81,7 @@ impl Reader {
         let text = normalise(text);
         let tokens = Tokens::of(&text);
         let parsed = self.best_parse(&tokens, &self.hear(&tokens, last_question));
-        let proposed = parsed.reading();
-        features(&parsed, &proposed).map(|rows| (rows, proposed.response))
+        features(&parsed, &parsed.reading()).map(|rows| (rows, parsed.reading().response))
     }
 
     /// Returns the reader's language.
