@@ -13,7 +13,7 @@ use service::{Span, Time};
 use tokio::sync::oneshot;
 
 use crate::events::Events;
-use crate::state::{Robot, State};
+use crate::state::{Answers, Robot, State};
 
 /// Time for the speech service to accept words.
 pub(crate) const PATIENCE: Span = Span::from_ms(8_000);
@@ -63,15 +63,20 @@ pub struct Feed {
     requests: DeviceReceiver<Request>,
     events: Arc<Events>,
     waiting: Vec<Waiting>,
-    /// The highest utterance that an act answers.
-    answered: u64,
+    answers: Answers,
     /// `true` where the state has not been published since.
     is_answered: bool,
 }
 
 impl Feed {
     pub(crate) fn new(requests: DeviceReceiver<Request>, events: Arc<Events>) -> Self {
-        Self { requests, events, waiting: Vec::new(), answered: 0, is_answered: false }
+        Self {
+            requests,
+            events,
+            waiting: Vec::new(),
+            answers: Answers::default(),
+            is_answered: false,
+        }
     }
 
     /// Descriptor that is readable while requests wait.
@@ -86,8 +91,7 @@ impl Feed {
 
     /// Takes in an act of the policy.
     pub fn on_act(&mut self, act: &RobotAct) {
-        self.is_answered |= act.utterance > self.answered;
-        self.answered = self.answered.max(act.utterance);
+        self.is_answered |= self.answers.add(act);
     }
 
     /// Takes in a receipt of the speech service.
@@ -148,7 +152,7 @@ impl Feed {
     pub fn publish(&mut self, robot: &Robot<'_>, has_changed: bool) {
         if has_changed || std::mem::take(&mut self.is_answered) {
             self.is_answered = false;
-            self.events.publish(State::new(robot, self.answered));
+            self.events.publish(State::new(robot, self.answers.clone()));
         }
     }
 }

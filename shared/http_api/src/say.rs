@@ -309,25 +309,20 @@ async fn hand_over(api: &Api, caller: &Caller, words: &Words, seen: u64) -> Hear
     }
 }
 
-/// Waits for the reply to an utterance: until it is applied and an act answers it. Where the robot gives up an object and
-/// goes on with a question, both lines are one reply. `open` is the request that was open before, 0 for none.
+/// Waits for the reply to an utterance: until it is applied and an act answers it, and the arm has given up an object that
+/// it is to give up. `open` is the request that was open before, 0 for none.
 async fn reply(api: &Api, (utterance, open): (u64, u64), until: Instant) -> Reply {
     let mut states = api.events.watch();
-    let (mut applied, mut before) = (None, None);
+    let mut applied = None;
     loop {
         let state = states.borrow_and_update().clone();
         let now = Instant::now();
         if state.utterance >= utterance {
             let since = *applied.get_or_insert(now);
             let is_settled = state.answers(utterance) || now >= since + SETTLED_AFTER;
-            if state.is_on_the_way() && now < until {
-                before = Some(state.text.clone());
-            } else if is_settled {
-                let reply = state.reply(utterance, open);
-                let before = before.filter(|before| !reply.text.contains(before.as_str()));
-                let text = before.iter().map(String::as_str).chain([reply.text.as_str()]);
-                let text = text.filter(|text| !text.is_empty()).collect::<Vec<_>>().join(" ");
-                return Reply { text, ..reply };
+            let is_on_the_way = state.is_on_the_way() && now < until;
+            if is_settled && !is_on_the_way {
+                return state.reply(utterance, open);
             }
         }
         if now >= until {

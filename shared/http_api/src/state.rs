@@ -2,7 +2,7 @@
 //!
 //! Pure.
 
-use messages::{ActKind, ArmStatus, MotionInhibit, PickPhase, PolicyView, Service};
+use messages::{ActKind, ArmStatus, MotionInhibit, PickPhase, PolicyView, RobotAct, Service};
 use scene::{Question, Scene};
 use serde::{Deserialize, Serialize};
 use service::status::{Actual, GroupStatus, ServiceState};
@@ -62,16 +62,25 @@ pub(crate) struct State {
     pub(crate) inner: Inner,
 }
 
+/// What the acts of the policy answer.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Answers {
+    /// The highest utterance that an act answers.
+    utterance: u64,
+    /// The latest line that gives up an object while its request goes on, and the utterance that it answers. The question
+    /// after it may replace it before anybody has looked.
+    given_up: (u64, String),
+}
+
 /// What replies are made of, and programs do not see.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Inner {
     /// The policy has published something, and the arm.
     pub(crate) is_known: bool,
     decision: ActKind,
     /// First and last utterance of the latest interaction.
     utterances: (u64, u64),
-    /// The highest utterance that an act answers.
-    pub(crate) answered: u64,
+    answers: Answers,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -141,9 +150,21 @@ pub struct Robot<'a> {
     pub group: Option<&'a GroupStatus>,
 }
 
+impl Answers {
+    /// Takes in an act. Returns whether it answers an utterance that none has answered.
+    pub(crate) fn add(&mut self, act: &RobotAct) -> bool {
+        let is_new = act.utterance > self.utterance;
+        self.utterance = self.utterance.max(act.utterance);
+        if act.kind == ActKind::Cancel && act.interaction != 0 {
+            self.given_up = (act.utterance, act.text.as_str().unwrap_or_default().to_owned());
+        }
+        is_new
+    }
+}
+
 impl State {
-    /// Makes the state; `answered` is the highest utterance that an act answers.
-    pub(crate) fn new(robot: &Robot<'_>, answered: u64) -> Self {
+    /// Makes the state.
+    pub(crate) fn new(robot: &Robot<'_>, answers: Answers) -> Self {
         let Robot { scene, latest, group } = robot;
         let arm = latest.arm.as_ref();
         let view = latest.view.as_ref().filter(|view| view.scene_key == scene.key());
@@ -176,7 +197,7 @@ impl State {
                 is_known: arm.is_some(),
                 decision: view.decision,
                 utterances: view.utterances,
-                answered,
+                answers,
             },
             ..nothing
         }
@@ -184,7 +205,7 @@ impl State {
 
     /// Returns whether the utterance was applied, and an act answers it.
     pub(crate) fn answers(&self, utterance: u64) -> bool {
-        self.utterance >= utterance && self.inner.answered >= utterance
+        self.utterance >= utterance && self.inner.answers.utterance >= utterance
     }
 
     /// Returns whether the robot has said that it gives up an object, and goes on with a question.
@@ -193,7 +214,8 @@ impl State {
     }
 
     /// Returns the reply to an utterance that was applied, said while the request `open` was, 0 for none. Without an act that
-    /// answers it, the robot is silent unless its question stands.
+    /// answers it, the robot is silent unless its question stands. Where the robot gives up an object and goes on with a
+    /// question, both lines are one reply.
     pub(crate) fn reply(&self, utterance: u64, open: u64) -> Reply {
         let (first, last) = self.inner.utterances;
         // Words that withdraw a request are not counted as a part of it.
@@ -214,9 +236,12 @@ impl State {
             _ => Kind::Silent,
         };
         let is_silent = kind == Kind::Silent;
+        let (given_up_at, given_up) = &self.inner.answers.given_up;
+        let goes_on = *given_up_at == utterance && !self.text.contains(given_up.as_str());
+        let text = if goes_on { format!("{given_up} {}", self.text) } else { self.text.clone() };
         Reply {
             kind,
-            text: if is_silent { String::new() } else { self.text.clone() },
+            text: if is_silent { String::new() } else { text },
             expects_answer: self.expects_answer,
             question: self.question.clone(),
             options: self.options.clone(),

@@ -1,4 +1,4 @@
-use messages::{Code, InteractionId, PolicyView, UtteranceSeq};
+use messages::{Code, FixedText, InteractionId, PolicyView, UtteranceSeq};
 use scene::{AttributeId, Options, ValueId};
 use serde_json::{Value as Json, json};
 use service::status::GroupStatus;
@@ -45,10 +45,27 @@ fn view(interaction: u64, decision: ActKind, question: Question) -> PolicyView {
     }
 }
 
-fn state_of(view: Option<PolicyView>, arm: ArmStatus, answered: u64) -> State {
+fn answers(acts: &[RobotAct]) -> Answers {
+    let mut answers = Answers::default();
+    for act in acts {
+        answers.add(act);
+    }
+    answers
+}
+
+/// An act that answers an utterance.
+fn act(utterance: u64) -> RobotAct {
+    RobotAct { utterance, ..RobotAct::default() }
+}
+
+fn state_after(view: Option<PolicyView>, arm: ArmStatus, acts: &[RobotAct]) -> State {
     let latest = Latest { view, arm: Some(arm), ..Latest::default() };
     let (scene, group) = (bowls(), group("ready"));
-    State::new(&Robot { scene: &scene, latest: &latest, group: Some(&group) }, answered)
+    State::new(&Robot { scene: &scene, latest: &latest, group: Some(&group) }, answers(acts))
+}
+
+fn state_of(view: Option<PolicyView>, arm: ArmStatus, answered: u64) -> State {
+    state_after(view, arm, &[act(answered)])
 }
 
 const WHITE: Question = Question::None;
@@ -90,7 +107,10 @@ fn state_says_which_service_is_away_or_held() {
         ("failed", Word::Disconnected, "arm has failed"),
     ] {
         let group = group(arm);
-        let state = State::new(&Robot { scene: &scene, latest: &latest, group: Some(&group) }, 5);
+        let state = State::new(
+            &Robot { scene: &scene, latest: &latest, group: Some(&group) },
+            answers(&[act(5)]),
+        );
         assert_eq!(state.state, expected);
         assert!(state.why.as_ref().is_some_and(|found| found.contains(why)), "{state:?}");
     }
@@ -123,6 +143,22 @@ fn reply_is_what_the_robot_answers() {
     assert_eq!(later.reply(6, 1).kind, Kind::Ended, "never mind");
     let nothing = state_of(Some(PolicyView { applied: 6, ..over }), still, 5).reply(6, 0);
     assert_eq!((nothing.kind, nothing.text.as_str()), (Kind::Silent, ""));
+}
+
+#[test]
+fn reply_keeps_the_line_that_gives_up_an_object_though_the_question_after_it_came_at_once() {
+    let (kind, text) = (Code::from(ActKind::Cancel), FixedText::truncated("All right."));
+    let gives_up = RobotAct { kind, text, interaction: 1, ..act(5) };
+    let asks = Some(view(1, ActKind::Ask, white()));
+    for (acts, expected) in [
+        (vec![gives_up, act(5)], "All right. Is it white?"),
+        (vec![gives_up, act(6)], "All right. Is it white?"),
+        (vec![RobotAct { utterance: 4, ..gives_up }, act(5)], "Is it white?"),
+        (vec![RobotAct { text: FixedText::truncated("Is it"), ..gives_up }], "Is it white?"),
+    ] {
+        let state = state_after(asks.clone(), ArmStatus::default(), &acts);
+        assert_eq!(state.reply(5, 1).text, expected, "{acts:?}");
+    }
 }
 
 #[test]
