@@ -162,6 +162,8 @@ control_msgs() (
 # `-p`: the features of a single package are other ones, with which cargo builds most crates again.
 # whisper.cpp is left to scripts/nightly, as it needs cmake and libclang.
 workspace=(--workspace --features "ros2/dds,link/zenoh,grounding/tls" --locked)
+# Unlike `--all-targets`, this builds no tests of programs that have none (`test = false`).
+every_target=(--lib --bins --tests --examples)
 
 # prepare_tests: installs what tests need beyond a Rust toolchain, and sets `with` to the options of the test programs
 # that include the tests for which that succeeded. Without them cargo ignores these tests, with their reasons.

@@ -32,7 +32,6 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 # Results of earlier runs, which a check-out keeps and a fresh machine lacks.
 KEPT = ROOT / "target" / "lanes"
-LANES = ["quick", "full", "nightly"]
 # A program that takes longer hangs: one that only computes gets little time while those with processes run.
 LIMIT_S = 2_400
 # More failures than this are no matter of chance.
@@ -102,7 +101,7 @@ def test_targets():
 
 def check_lanes(lanes):
     """Exits if a test target is in no lane, or a lane names one that is not there."""
-    named = {name for lane in [*LANES, "elsewhere"] for name in lanes[lane]}
+    named = {name for lane in ["quick", "full", "elsewhere"] for name in lanes[lane]}
     names = test_targets()
     for name in sorted(names - named):
         say(f"tests/lanes/lanes.toml: expected the lane of {name}, found none; help: add it to one of the lists")
@@ -122,7 +121,7 @@ def cargo_options(lanes, lane):
 def in_lane(lanes, lane, found):
     """The programs of a lane."""
     if lane == "nightly":
-        return [p for p in found if p.name in lanes["nightly"] or p.name in lanes["full"]]
+        return [p for p in found if p.name in lanes["full"]]
     names = set(lanes["quick"]) | (set(lanes["full"]) if lane == "full" else set())
     return [p for p in found if p.is_unit or p.name in names]
 

@@ -8,6 +8,8 @@
 //! | `faults.rs` | faults drawn from a seed: kills, full disks, lost and duplicated messages |
 //! | `forger.rs` | messages that no service sends |
 //! | `user.rs` | the user and the input channels |
+//! | `deaths.rs` | deaths of services, of the client and of the whole group, and what starts again |
+//! | `voice.rs` | the robot's sentences, which take their time |
 //! | `client.rs` | the user at a terminal, by the command line's own code, who is killed as well |
 //! | `routes.rs` | routing of the services' messages |
 //! | `stop.rs` | stop orders that are repeated until the arm has carried them out |
@@ -16,6 +18,7 @@
 
 mod attribution;
 mod client;
+mod deaths;
 mod disk;
 mod faults;
 mod forger;
@@ -26,6 +29,7 @@ mod routes;
 mod stop;
 mod table;
 mod user;
+mod voice;
 
 use std::iter::repeat_n;
 use std::path::Path;
@@ -38,7 +42,7 @@ use messages::{ActKind, Outcome, PolicyView};
 use policy::PolicyNode;
 use scene::{ObjectId, Scene};
 use service::{Span, Time};
-use speech::{PlaybackEvent, PlaybackRequest, PlaybackState, SpeechNode};
+use speech::SpeechNode;
 use vocabulary::Rng;
 
 pub use attribution::{Count, study};
@@ -50,24 +54,12 @@ pub use perceived::{Tally, at_best, before_camera, converse, detect, perceive};
 pub use stop::RepeatedStop;
 pub use table::{Eye, Happening, TableTop};
 pub use user::{Channel, GroupUser};
+use voice::{QUICK_SENTENCE_S, SENTENCE_S, Saying};
 
 /// Time between two passes.
 const STEP: Span = Span::from_ms(10);
 /// A dialogue that takes longer is stuck.
 const END: Time = Time(240_000_000_000);
-/// Duration of a robot's sentence: median, seconds, and standard deviation of the logarithm.
-const SENTENCE_S: (f64, f64) = (1.9, 0.12);
-/// A sentence in a group that is quick, so that faults hit more of its dialogue.
-const QUICK_SENTENCE_S: (f64, f64) = (0.4, 0.0);
-
-/// A sentence that the voice is saying.
-struct Saying {
-    playback: u64,
-    /// When it is heard, if it is not yet.
-    begins: Option<Time>,
-    ends: Time,
-}
-
 /// A sound that a recogniser is decoding: the robot's, by its number, or the client's.
 struct Decoding {
     done: Time,
@@ -287,75 +279,6 @@ impl SimulatedGroup {
         &self.settings.scene
     }
 
-    /// Restarts all services with the other scene, each after a delay of its own: what one of them
-    /// sends may reach another that still has the former.
-    fn change_the_scene(&mut self) {
-        let is_time = self.view.decision == ActKind::Ask && self.policy.is_up();
-        let Some(to) = self.change.take_if(|_| is_time) else { return };
-        self.log("the scene changes");
-        self.speech.replace::<speech::shell::SpeechProgram>(&to);
-        self.grounding.replace::<grounding::shell::GroundingProgram>(&to);
-        self.policy.replace::<policy::shell::PolicyProgram>(&to);
-        if let Some(arm) = &mut self.arm {
-            arm.replace::<arm::shell::ArmProgram<drivers::Shipped>>(&to);
-        }
-        self.restarts = std::array::from_fn(|_| Some(self.now + self.faults.downtime()));
-        let wanted = self.user.wanted().map(|object| &self.scene().object(object).name);
-        let wanted = wanted.and_then(|name| to.scene.object_named(name));
-        self.user.want(Some(wanted.expect("the wanted object stays")));
-        self.model = Model::new(&to.scene, to.dialogue.params);
-        let records = self.policy.journal().len();
-        self.before = Some((std::mem::replace(&mut self.settings, to), records));
-    }
-
-    /// The supervisor dies: every service follows it, and the client finds no group. The person
-    /// starts all of it again.
-    fn kill_everything(&mut self) {
-        if !self.faults.group_dies(self.now) {
-            return;
-        }
-        self.log("the group dies");
-        self.speech.kill();
-        self.grounding.kill();
-        self.policy.kill();
-        if let Some(arm) = &mut self.arm {
-            arm.kill();
-        }
-        self.inboxes = Inboxes::default();
-        let up = self.now + self.faults.client_downtime();
-        self.restarts = std::array::from_fn(|_| Some(up + self.faults.downtime()));
-        if let Some(client) = &mut self.client {
-            (client.arrived, client.history) = Default::default();
-            client.kill(up + self.faults.client_downtime());
-        }
-    }
-
-    fn restart(&mut self) {
-        let now = self.now;
-        let [speech, grounding, policy, arm] =
-            self.restarts.each_mut().map(|at| at.take_if(|at| *at <= now).is_some());
-        if speech {
-            let outputs = self.speech.start(now, &mut self.faults);
-            self.saying = None;
-            if let Some(client) = &mut self.client {
-                client.forget_speech();
-            }
-            self.route_speech(outputs);
-        }
-        if grounding {
-            let outputs = self.grounding.start(now, &mut self.faults);
-            self.route_grounding(outputs);
-        }
-        if policy {
-            let outputs = self.policy.start(now, &mut self.faults);
-            self.route_policy(outputs);
-        }
-        if let Some(host) = self.arm.as_mut().filter(|_| arm) {
-            let outputs = host.start(now, &mut self.faults);
-            self.route_arm(outputs);
-        }
-    }
-
     fn pass_all(&mut self) {
         self.forge();
         let now = self.now;
@@ -382,14 +305,6 @@ impl SimulatedGroup {
         self.route_arm(outputs);
     }
 
-    /// Schedules the restart of a process that has died in its pass.
-    fn note_death(&mut self, which: usize, is_up: bool, name: &str) {
-        if !is_up && self.restarts[which].is_none() {
-            self.restarts[which] = Some(self.now + self.faults.downtime());
-            self.log(format_args!("{name} dies"));
-        }
-    }
-
     fn camera_looks(&mut self) {
         let Some(table) = &mut self.table else { return };
         for sighting in table.look(self.now) {
@@ -412,54 +327,6 @@ impl SimulatedGroup {
             let copies = self.faults.copies(now);
             let message = speech::In::Injection(injection);
             self.inboxes.speech.extend(repeat_n(message, copies));
-        }
-    }
-
-    fn finish_sentence(&mut self) {
-        let now = self.now;
-        if let Some(saying) = &mut self.saying
-            && saying.begins.take_if(|begins| *begins <= now).is_some()
-        {
-            let playback = saying.playback;
-            self.voice(playback, PlaybackState::Started);
-        }
-        if let Some(saying) = self.saying.take_if(|saying| saying.ends <= now) {
-            self.voice(saying.playback, PlaybackState::Ended);
-        }
-    }
-
-    fn voice(&mut self, playback: u64, state: PlaybackState) {
-        let event = PlaybackEvent { playback, state };
-        self.inboxes.speech.push(speech::In::Playback(event));
-    }
-
-    fn speak(&mut self, line: &PlaybackRequest) {
-        self.stop_speaking();
-        let length_s = self.rng.log_normal(self.sentence_s.0, self.sentence_s.1);
-        self.log(format_args!("robot: {}", line.text));
-        let begins = self.now + self.synthesis;
-        let ends = begins + Span::from_s(length_s);
-        self.saying = Some(Saying { playback: line.playback, begins: Some(begins), ends });
-        if self.synthesis == Span(0) {
-            self.finish_sentence();
-        }
-    }
-
-    /// The speech service dies before it hears of a new question.
-    fn die_at_question(&mut self, prompt: u64) {
-        let is_new = self.client.as_ref().is_some_and(|client| client.is_new(prompt));
-        if self.dies_at_questions && is_new && self.restarts[0].is_none() {
-            self.speech.kill();
-            self.inboxes.speech.clear();
-            self.restarts[0] = Some(self.now + self.faults.downtime());
-            self.log("speech dies");
-        }
-    }
-
-    fn stop_speaking(&mut self) {
-        if let Some(saying) = self.saying.take() {
-            self.log("robot: …");
-            self.voice(saying.playback, PlaybackState::Interrupted);
         }
     }
 }
