@@ -38,7 +38,7 @@ use config::Settings;
 use dialogue::Model;
 use evaluation::simulation::users::Domain;
 use grounding::GroundingNode;
-use messages::{ActKind, Outcome, PolicyView};
+use messages::{Outcome, PolicyView};
 use policy::PolicyNode;
 use scene::{ObjectId, Scene};
 use service::{Span, Time};

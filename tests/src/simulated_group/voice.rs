@@ -15,7 +15,7 @@ pub(super) struct Saying {
     playback: u64,
     /// When it is heard, if it is not yet.
     begins: Option<Time>,
-    ends: Time,
+    pub(super) ends: Time,
 }
 
 impl SimulatedGroup {
