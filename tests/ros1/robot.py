@@ -30,6 +30,8 @@ COMMAND_TIMEOUT_S = 0.2
 # The fastest that a joint is moved in the tests, and at least what it then makes up for; joint states that are older
 # than this stop the arm.
 FASTEST_RAD_S, CATCHES_UP_RAD_S, STALE_S = 0.5, 0.25, 1.0
+# The joints advance by no more at once, however late this program is.
+ADVANCE_MAX_S = 0.1
 FINGERS_PERCENT_S = 100.0
 OBJECT_PERCENT = 15.0
 JOINTS = ["s0", "s1", "e0", "e1", "w0", "w1", "w2"]
@@ -212,7 +214,10 @@ class Robot:
         while not rospy.is_shutdown():
             with self.lock:
                 now = time.monotonic()
-                self.advance(min(now - last, 0.1) or PERIOD_S)
+                late = min(now - last, STALE_S)
+                if late > ADVANCE_MAX_S:
+                    self.lead = max(self.lead, late * FASTEST_RAD_S)
+                self.advance(min(late, ADVANCE_MAX_S) or PERIOD_S)
                 last = now
                 self.report(beat)
             beat += 1
